@@ -2,7 +2,8 @@
 # Two commands for a fresh Debian 12 or 13: make render, make test. Everything else is CMake's.
 PACKAGES = cmake ninja-build ccache mold pkg-config libembree-dev libtbb-dev libimath-dev libopenimageio-dev \
     openimageio-tools libopencolorio-dev libtinygltf-dev nlohmann-json3-dev libfmt-dev \
-    libcli11-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev libfreetype-dev libcpp-httplib-dev
+    libcli11-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev libfreetype-dev libcpp-httplib-dev \
+    libkissfft-dev
 # What draws plots, and the letters on contact sheets.
 OPTIONAL_PACKAGES = gnuplot-nox fonts-dejavu-core
 PYTHON_PACKAGES = pybind11-dev python3-dev python3-numpy

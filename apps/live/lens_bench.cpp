@@ -42,7 +42,8 @@ struct Bench : LensBench {
 
 Bench set_up(const BenchRequest& request) {
     Prescription file = parse_lens(request.lens, "the lens").lens;
-    if (request.fstop > 0) file = stopped_down(std::move(file), request.fstop);
+    if (request.fstop > 0)
+        if (auto stopped = stopped_down(Lens(file), request.fstop)) file = *std::move(stopped);
     const double distance_mm =
         request.focus_m > 0 ? 1000 * request.focus_m : std::numeric_limits<double>::infinity();
     auto sharp = LensBench::focused(Lens(file), distance_mm);

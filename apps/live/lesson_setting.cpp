@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/live/lesson_setting.h"
 
+#include "camera/lens/focus.h"
+
 #include "apps/request/value_error.h"
 #include "camera/bench/analysis.h"
 #include "camera/bench/ray_path.h"
@@ -29,7 +31,9 @@ LensBench LessonSetting::bench(bool stopped) const {
     const auto* loaded = std::get_if<LoadedLens>(&model_.optics);
     if (!loaded) throw refusal("is no lens that is traced surface by surface");
     const Prescription& file = loaded->lens.prescription();
-    return in_focus(Lens(stopped ? stopped_down(file, fstop()) : file));
+    const Lens open(file);
+    const auto narrow = stopped ? stopped_down(open, fstop()) : std::nullopt;
+    return in_focus(narrow ? Lens(*narrow) : open);
 }
 
 LensBench LessonSetting::in_focus(const Lens& lens) const {

@@ -62,7 +62,7 @@ install(FILES README.md CHANGELOG.md DESTINATION ${docs}/petzval-doc COMPONENT d
 # and the rest. Each has the objects of its rooms, and their headers by the names that they include.
 get_property(render_rooms GLOBAL PROPERTY petzval_rooms)
 set(lens_rooms core/math core/sampling core/spectrum camera camera/lens camera/iris camera/dispersion
-    camera/models camera/bench io/base io/file io/glass io/lens)
+    camera/models camera/bench camera/waves io/base io/file io/glass io/lens)
 list(FILTER render_rooms EXCLUDE REGEX "^(apps/(cli|commands|package|chart|python)|io/(codec|plot))")
 list(REMOVE_ITEM render_rooms ${lens_rooms})
 foreach(archive lens render)

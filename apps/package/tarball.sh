@@ -78,7 +78,8 @@ needed() { ldd "$1" | sed -nE 's/.* => (\/.*) \(0x[0-9a-f]+\)$/\1/p'; }
     package=$({ dpkg-query --search "$real" "${real#/usr}" 2> /dev/null || true; } | sed -n '1s/:.*//p')
     install -m 644 "/usr/share/doc/$package/copyright" "$folder/share/doc/petzval/licenses/$package"
 done
-for package in libdraco-dev libmeshoptimizer-dev libfmt-dev libcli11-dev nlohmann-json3-dev libtinygltf-dev; do
+for package in libdraco-dev libmeshoptimizer-dev libfmt-dev libcli11-dev nlohmann-json3-dev libtinygltf-dev \
+    libkissfft-dev; do
     install -m 644 "/usr/share/doc/$package/copyright" "$folder/share/doc/petzval/licenses/$package"
 done
 

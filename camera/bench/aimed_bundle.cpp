@@ -138,38 +138,69 @@ AimedBundle::Line AimedBundle::line(PupilPoint pupil_point) const {
             V3d(ray.direction.x[0], ray.direction.y[0], ray.direction.z[0])};
 }
 
+template <class N>
+BundlePassage<N> AimedBundle::pass(N sagittal, N tangential, Clip clip) const {
+    using V = ValueOf<N>;
+    BundlePassage<N> out;
+    out.ray = launched<N>(sagittal, tangential);
+    if (std::isfinite(object_.distance_mm)) {  // where the wave is a sphere
+        const double to_object_mm =
+            object_.distance_mm / std::cos(object_.field_deg * std::numbers::pi / 180);
+        const V s = value_of(sagittal), t = value_of(tangential), r2 = s * s + t * t;
+        out.path_mm = r2 / (to_object_mm + sqrt(to_object_mm * to_object_mm + r2));
+    }
+    const SurfaceFacts<double>* const facts = lens_->surfaces<double>().data();
+    const auto observe = [&](const LensHit<V>& hit) {
+        out.path_mm += select(hit.reached, hit.index * hit.distance_mm, V{});
+        if (hit.surface == lens_->stop()) {
+            out.stop_x = hit.point.x;
+            out.stop_y = hit.point.y;
+            return;
+        }
+        const V inside = 1 - (hit.point.x * hit.point.x + hit.point.y * hit.point.y) /
+                                 facts[hit.surface].semi_diameter2_mm2;
+        out.inside = select(inside < out.inside, inside, out.inside);
+    };
+    const auto alive = trace_lens<N>({*lens_, Towards::Film, {0, lens_->last()}, clip}, indices_,
+                                     out.ray, observe);
+    out.passed = alive & (value_of(out.ray.direction.z) > 0);
+    return out;
+}
+template BundlePassage<d4> AimedBundle::pass(d4, d4, Clip) const;
+template BundlePassage<Dual<d4>> AimedBundle::pass(Dual<d4>, Dual<d4>, Clip) const;
+
 std::vector<BundleRay> AimedBundle::trace(std::span<const PupilPoint> pupil_points, double film_mm,
                                           Clip clip) const {
     std::vector<BundleRay> out;
     const double to_film_mm = film_mm - lens_->vertex_mm(lens_->last());
+    const double index = film_index();
     for (size_t first = 0; first < pupil_points.size(); first += 4) {
         const size_t count = std::min<size_t>(4, pupil_points.size() - first);
-        d4 sagittal{}, tangential{}, stop_x{}, stop_y{};
+        d4 sagittal{}, tangential{};
         for (int i = 0; i < 4; ++i) {
             const PupilPoint& pupil_point = pupil_points[first + std::min(size_t(i), count - 1)];
             sagittal[i] = pupil_point[0];
             tangential[i] = pupil_point[1];
         }
-        LensRay<d4> ray = launched<d4>(sagittal, tangential);
-        const auto at_stop = [&](const LensHit<d4>& hit) {
-            if (hit.surface != lens_->stop()) return;
-            stop_x = hit.point.x;
-            stop_y = hit.point.y;
-        };
-        const auto passed = trace_lens<d4>({*lens_, Towards::Film, {0, lens_->last()}, clip},
-                                           indices_, ray, at_stop);
+        const BundlePassage<d4> passage = pass<d4>(sagittal, tangential, clip);
+        const LensRay<d4>& ray = passage.ray;
         for (int i = 0; i < static_cast<int>(count); ++i) {
-            if (!passed[i] || !(ray.direction.z[i] > 0)) continue;
+            if (!passage.passed[i]) continue;
             const double slope_x = ray.direction.x[i] / ray.direction.z[i];
             const double slope_y = ray.direction.y[i] / ray.direction.z[i];
             const double dz = to_film_mm - ray.origin.z[i];
             out.push_back({pupil_points[first + size_t(i)],
-                           {stop_x[i], stop_y[i]},
+                           {passage.stop_x[i], passage.stop_y[i]},
                            {ray.origin.x[i] + slope_x * dz, ray.origin.y[i] + slope_y * dz},
-                           {slope_x, slope_y}});
+                           {slope_x, slope_y},
+                           passage.path_mm[i] + index * dz / ray.direction.z[i]});
         }
     }
     return out;
+}
+
+double AimedBundle::film_index() const {
+    return indices_.of_medium[lens_->surfaces<double>().back().medium_after][0];
 }
 
 std::vector<PupilPoint> AimedBundle::grid(int side) const {

@@ -34,6 +34,21 @@ struct BundleRay {
     std::array<double, 2> stop_mm;  ///< x, y
     std::array<double, 2> film_mm;  ///< x, y
     std::array<double, 2> slope;    ///< dx/dz, dy/dz at the film
+    double path_mm = 0;             ///< as BundlePassage has it, and on to the film
+};
+
+/// Rays of a bundle behind the lens, lane by lane. N: d4, or Dual<d4> with the derivatives by the
+/// two coordinates of the pupil point.
+template <class N>
+struct BundlePassage {
+    LensRay<N> ray;  ///< at the last surface
+    /// Optical path to there from the wave of the object that passes the middle of the entrance
+    /// pupil.
+    ValueOf<N> path_mm{};
+    ValueOf<N> stop_x{}, stop_y{};  ///< where it crosses the stop, mm
+    /// Least 1 - (r / semi-diameter)^2 at the surfaces, the stop left out: above 0 within all rims.
+    ValueOf<N> inside = broadcast<ValueOf<N>>(1);
+    MaskOf<N> passed{};  ///< it leaves the lens for the film
 };
 
 /// Rays of an object point, traced as for rendering, in doubles. The lens must outlive it.
@@ -43,6 +58,7 @@ class AimedBundle {
     /// rays to the stop's rim. Nothing where no ray reaches the middle of the stop.
     [[nodiscard]] static std::optional<AimedBundle> aim(const Lens&, const ObjectPoint&, double nm);
 
+    [[nodiscard]] const Lens& lens() const { return *lens_; }
     [[nodiscard]] double nm() const { return nm_; }
     [[nodiscard]] const ObjectPoint& object() const { return object_; }
     /// Chief ray: to the middle of the stop.
@@ -55,6 +71,11 @@ class AimedBundle {
         V3d origin_mm, direction;  ///< z from the first vertex; unit
     };
     [[nodiscard]] Line line(PupilPoint) const;
+    /// Index of the medium before the film.
+    [[nodiscard]] double film_index() const;
+    /// The rays of four pupil points through the lens.
+    template <class N>
+    [[nodiscard]] BundlePassage<N> pass(N sagittal, N tangential, Clip) const;
     /// Arrivals of the rays that reach the film, in the order of their pupil points.
     [[nodiscard]] std::vector<BundleRay> trace(std::span<const PupilPoint>, double film_mm,
                                                Clip = Clip::Yes) const;

@@ -30,8 +30,9 @@ Section stated_section(const Lens& lens) {
 
 }  // namespace
 
-std::optional<double> chief_height_mm(const Lens& lens, const ObjectPoint& object, double film_mm) {
-    const auto bundle = AimedBundle::aim(lens, object, kLineD_nm);
+std::optional<double> chief_height_mm(const Lens& lens, const ObjectPoint& object, double film_mm,
+                                      double nm) {
+    const auto bundle = AimedBundle::aim(lens, object, nm);
     if (!bundle) return std::nullopt;
     const PupilPoint chief = bundle->chief();
     const auto rays = bundle->trace({&chief, 1}, film_mm, Clip::No);

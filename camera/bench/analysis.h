@@ -17,10 +17,10 @@ namespace petzval {
 /// where neither does.
 [[nodiscard]] std::optional<double> field_half_deg(const Prescription&);
 
-/// Height on the film of the chief ray, line d (through the middle of the stop), in the object's
-/// section; nothing where it is lost. No rim stops it.
-[[nodiscard]] std::optional<double> chief_height_mm(const Lens&, const ObjectPoint&,
-                                                    double film_mm);
+/// Height on the film of the chief ray (through the middle of the stop), in the object's section;
+/// nothing where it is lost. No rim stops it.
+[[nodiscard]] std::optional<double> chief_height_mm(const Lens&, const ObjectPoint&, double film_mm,
+                                                    double nm = kLineD_nm);
 
 struct Distortion {
     double field_deg;

@@ -2,7 +2,6 @@
 #include "camera/bench/spot.h"
 
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 namespace petzval {
@@ -47,13 +46,17 @@ double best_shift_mm(std::span<const BundleRay> rays) {
     return square > 0 ? -product / square : 0;
 }
 
-double geometric_mtf(std::span<const BundleRay> rays, double cycles_per_mm, Section along) {
+std::complex<double> geometric_transfer(std::span<const BundleRay> rays, double cycles_per_mm,
+                                        Section along) {
     const size_t k = along == Section::X ? 0 : 1;
     std::complex<double> sum;
     for (const BundleRay& ray : rays)
-        sum += std::polar(
-            1., 2 * std::numbers::pi * cycles_per_mm * (ray.film_mm[k] - rays.front().film_mm[k]));
-    return std::abs(sum) / static_cast<double>(rays.size());
+        sum += std::polar(1., -2 * std::numbers::pi * cycles_per_mm * ray.film_mm[k]);
+    return sum / static_cast<double>(rays.size());
+}
+
+double geometric_mtf(std::span<const BundleRay> rays, double cycles_per_mm, Section along) {
+    return std::abs(geometric_transfer(rays, cycles_per_mm, along));
 }
 
 std::vector<FanPoint> ray_fan(const Lens& lens, const AimedBundle& bundle, Section along,

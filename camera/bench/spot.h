@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <span>
 #include <vector>
 
@@ -20,10 +21,13 @@ struct SpotSize {
 /// Best focus: shift to the plane of the smallest spot; 0 where all rays are parallel.
 [[nodiscard]] double best_shift_mm(std::span<const BundleRay>);
 
-/// Contrast that a spot leaves of a sine grating on the film, its lines across `along`: the modulus
-/// of the spot's Fourier transform. Geometric: without diffraction, which alone would leave about
-/// 1 - 1.27 nm 1e-6 fnumber cycles_per_mm. Williams and Becklund 1989, Introduction to the Optical
-/// Transfer Function, ch. 5. At least one ray.
+/// Fourier transform of a spot along one axis of the film, about the film's middle: its modulus is
+/// the contrast that it leaves of a sine grating whose lines lie across `along`. Geometric: without
+/// diffraction, which alone would leave about 1 - 1.27 nm 1e-6 fnumber cycles_per_mm. Williams and
+/// Becklund 1989, Introduction to the Optical Transfer Function, ch. 5. At least one ray.
+[[nodiscard]] std::complex<double> geometric_transfer(std::span<const BundleRay>,
+                                                      double cycles_per_mm, Section along);
+/// Its modulus.
 [[nodiscard]] double geometric_mtf(std::span<const BundleRay>, double cycles_per_mm, Section along);
 
 /// Transverse aberration of one ray of a line across the aperture.

@@ -211,6 +211,16 @@ std::optional<double> stop_radius_for(const Lens& lens, double fnumber) {
     return ray->stop_height_mm;
 }
 
+std::optional<Prescription> stopped_down(const Lens& lens, double fnumber) {
+    constexpr double same = 1e-6;
+    Prescription out = lens.prescription();
+    double& radius_mm = out.surfaces[size_t(lens.stop())].semi_diameter_mm;
+    const auto wanted_mm = stop_radius_for(lens, fnumber);
+    if (!wanted_mm || *wanted_mm > radius_mm * (1 + same)) return std::nullopt;
+    radius_mm = std::min(radius_mm, *wanted_mm);
+    return out;
+}
+
 double fnumber_of(const Lens& lens, double stop_radius_mm) {
     double low = 0, high = lens.prescription().surfaces.front().semi_diameter_mm;
     const auto beyond = [&](double height) {

@@ -43,6 +43,8 @@ inline constexpr const char* kTracedFnumber =
 /// Stop radius that gives an f-number by kTracedFnumber; nothing where the glass does not let such
 /// a ray through, or no ray has that angle.
 [[nodiscard]] std::optional<double> stop_radius_for(const Lens&, double fnumber);
+/// The lens with its iris at an f-number; nothing where it does not open so far.
+[[nodiscard]] std::optional<Prescription> stopped_down(const Lens&, double fnumber);
 /// F-number of a stop radius, by kTracedFnumber; infinite where no ray gets there.
 [[nodiscard]] double fnumber_of(const Lens&, double stop_radius_mm);
 

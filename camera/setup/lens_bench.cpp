@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/setup/lens_bench.h"
 
-#include <algorithm>
-
 #include "camera/lens/focus.h"
 #include "camera/lens/paraxial.h"
 #include "camera/setup/focused_lens.h"
@@ -20,14 +18,6 @@ std::optional<LensBench> LensBench::focused(const Lens& lens, double distance_mm
 std::optional<double> LensBench::best_film_shift_mm() const {
     const double pupil_mm = first_order(*lens, kLineD_nm).entrance_pupil_mm;
     return petzval::best_film_shift_mm(*lens, film_mm, pupil_mm - distance_mm);
-}
-
-Prescription stopped_down(Prescription file, double fnumber) {
-    const Lens open(file);
-    double& radius_mm = file.surfaces[size_t(open.stop())].semi_diameter_mm;
-    if (const auto wanted_mm = stop_radius_for(open, fnumber))
-        radius_mm = std::min(radius_mm, *wanted_mm);
-    return file;
 }
 
 }  // namespace petzval

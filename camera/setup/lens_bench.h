@@ -34,7 +34,4 @@ struct LensBench {
     [[nodiscard]] std::optional<double> best_film_shift_mm() const;
 };
 
-/// The prescription with the iris that gives an f-number, where that is narrower than as filed.
-[[nodiscard]] Prescription stopped_down(Prescription, double fnumber);
-
 }  // namespace petzval

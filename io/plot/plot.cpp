@@ -59,6 +59,8 @@ const char* style_name(PlotStyle style) {
             return "linespoints";
         case PlotStyle::Dashes:
             return "lines dashtype 2";
+        case PlotStyle::Cells:
+            return "image";
     }
     return "";
 }
@@ -90,6 +92,8 @@ std::string rows(const PlotSeries& series, bool logarithmic_x, bool logarithmic_
         if (!std::isfinite(x) || !std::isfinite(y)) continue;
         if ((logarithmic_x && !(x > 0)) || (logarithmic_y && !(y > 0))) continue;
         text += fmt::format("{} {}", x, y);
+        if (series.style == PlotStyle::Cells)
+            text += std::isfinite(series.values[i]) ? fmt::format(" {}", series.values[i]) : " NaN";
         if (!series.y_bounds.empty()) {
             auto [low, high] = series.y_bounds[i];
             if (logarithmic_y && !(low > 0)) low = y / 10;
@@ -108,18 +112,29 @@ std::string script(const char* terminal_name, const Plot& plot) {
         terminal_name, quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label));
     if (plot.logarithmic) text += "set logscale xy\nset offsets 0, 0, 0, 0\n";
     if (plot.logarithmic_y) text += "set logscale y\nset offsets 0, 0, 0, 0\nset key outside\n";
+    constexpr size_t most_in_key = 8;  // more would hide the curves
+    if (plot.series.size() > most_in_key) text += "set key outside\n";
     if (plot.equal_scale) text += "set size ratio -1\n";
+    if (!plot.value_label.empty())
+        text += fmt::format(
+            "set offsets 0, 0, 0, 0\nset autoscale fix\nset cblabel {}\nset palette defined (0 "
+            "'#440154', 1 '#3b528b', 2 '#21918c', "
+            "3 '#5ec962', 4 '#fde725')\n",
+            quoted(plot.value_label));
     std::string lines;
     for (size_t i = 0; i < plot.series.size(); ++i) {
         const PlotSeries& series = plot.series[i];
         text += fmt::format("$series{} << end\n{}end\n", i,
                             rows(series, plot.logarithmic, plot.logarithmic || plot.logarithmic_y));
         const bool bars = !series.y_bounds.empty();
-        lines +=
-            fmt::format("{}$series{} using {} with {} linewidth 2 {}{}", i == 0 ? "plot " : ", ", i,
-                        bars ? "1:2:3:4" : "1:2", bars ? "yerrorlines" : style_name(series.style),
-                        series.grey ? "linecolor 'gray40' " : "",
-                        series.label.empty() ? "notitle" : "title " + quoted(series.label));
+        const bool cells = series.style == PlotStyle::Cells;
+        lines += fmt::format("{}$series{} using {} with {}{}{} {}", i == 0 ? "plot " : ", ", i,
+                             bars    ? "1:2:3:4"
+                             : cells ? "1:2:3"
+                                     : "1:2",
+                             bars ? "yerrorlines" : style_name(series.style),
+                             cells ? "" : " linewidth 2", series.grey ? " linecolor 'gray40'" : "",
+                             series.label.empty() ? "notitle" : "title " + quoted(series.label));
     }
     return text + lines + "\n";
 }

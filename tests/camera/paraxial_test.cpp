@@ -87,5 +87,46 @@ TEST_P(OracleFirstOrder, SeidelSumsOfEachSurface) {
     }
 }
 
+// A textbook's Cooke triplet in another program, OpticStudio 2026 R1: its figures stand in the
+// issue tracker of HarrisonKramer/optiland, number 710. Stop on the fourth surface; SK16 is
+// Hikari's and F2 Schott's, by the formulas in refractiveindex.info: of 35 pairs of such glasses
+// the only one that gives all digits. The image is the textbook's, 42.20778 mm behind the last
+// vertex.
+TEST(Paraxial, CookeTripletIsThatOfAnOpticsProgram) {
+    const Glass sk16{"SK16", PowerSeries{{{2.592001, 0},
+                                          {-0.01540969, 2},
+                                          {0.0102268, -2},
+                                          {0.001581559, -4},
+                                          {-0.0001877149, -6},
+                                          {1.012515e-05, -8}}}};
+    const Glass f2{"F2", Sellmeier{{{1.34533359, 0.00997743871},
+                                    {0.209073176, 0.0470450767},
+                                    {0.937357162, 111.886764}}}};
+    Prescription file;
+    const auto add = [&](double radius_mm, double thickness_mm, const Glass* glass, bool stop) {
+        LensSurface surface;
+        surface.curvature_1_mm = radius_mm == 0 ? 0 : 1 / radius_mm;
+        surface.thickness_mm = thickness_mm;
+        surface.semi_diameter_mm = stop ? 3.8364 : 10;
+        surface.stop = stop;
+        if (glass) surface.glass = *glass;
+        file.surfaces.push_back(surface);
+    };
+    add(22.01359, 3.25896, &sk16, false);
+    add(-435.76044, 6.00755, nullptr, false);
+    add(-22.21328, 0.99997, &f2, false);
+    add(20.29192, 0, nullptr, false);
+    add(0, 4.75041, nullptr, true);
+    add(79.68360, 2.95208, &sk16, false);
+    add(-18.39533, 42.20778, nullptr, false);
+    const double nm = 550;
+    const FirstOrder first = first_order(Lens(file), nm);
+    EXPECT_NEAR(first.focal_length_mm, 49.9997831, 5e-7);
+    EXPECT_NEAR(first.entrance_pupil_mm, 11.5121587, 5e-7);
+    EXPECT_NEAR(first.exit_pupil_mm - file.surfaces.back().thickness_mm, -50.9613480, 5e-7);
+    // Its f-number is that of an entrance pupil of 10 mm.
+    EXPECT_NEAR(first.focal_length_mm / 10, 4.9999783, 5e-8);
+}
+
 }  // namespace
 }  // namespace petzval

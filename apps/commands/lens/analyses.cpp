@@ -4,67 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "apps/cli/console.h"
 #include "apps/cli/readers.h"
-#include "apps/commands/lens/field.h"
+#include "apps/commands/lens/analysis.h"
+#include "apps/commands/lens/waves.h"
 #include "camera/bench/analysis.h"
-#include "camera/bench/spot.h"
 #include "io/base/error.h"
-#include "io/file/atomic_file.h"
-#include "io/file/csv.h"
-#include "io/file/rescue.h"
-#include "io/plot/plot.h"
 
 namespace petzval {
 namespace {
-
-/// Result of an analysis: a diagram, and the numbers in it.
-struct Found {
-    Plot plot;
-    std::vector<std::string> names;
-    std::vector<std::vector<double>> rows;
-};
-
-struct AnalysisOptions {
-    FieldRequest field;
-    std::string plot, csv;
-    double most_cycles = 100, image_circle_mm = 0;
-};
-
-using Analysis = std::function<Found(const AnalysisOptions&)>;
-
-constexpr double kMicrons = 1000;  // in a mm
-
-std::string title_of(const Lens& lens, const std::string& what) {
-    const Prescription& file = lens.prescription();
-    return fmt::format("{}: {}", file.name, what);
-}
-
-FieldSetup set_up_lit(const FieldRequest& request, const std::vector<double>& shares) {
-    FieldSetup setup = set_up(request, shares);
-    require_light(*setup.lens);
-    return setup;
-}
-
-std::vector<BundleRay> traced(const AimedBundle& bundle, double film_mm, int side) {
-    return bundle.trace(bundle.grid(side), film_mm);
-}
 
 void append(std::vector<BundleRay>& all, const std::vector<BundleRay>& more) {
     all.insert(all.end(), more.begin(), more.end());
 }
 
-[[noreturn]] void refuse_dark(const Lens& lens, double field_deg) {
-    throw ArgumentError(lens.prescription().name, "",
-                        "no light of the field {:g}° reaches the film; give a smaller --field",
-                        field_deg);
-}
-
 void print_spot(double field_deg, const char* line, const SpotSize& size) {
-    // Not -0.000000.
-    const auto shown = [](double mm) { return std::fabs(mm) < 5e-7 ? 0 : mm; };
     fmt::print("{:>10.4g} {:>6} {:>12.6f} {:>12.6f} {:>12.4f}\n", field_deg, line,
                shown(size.centroid_mm[0]), shown(size.centroid_mm[1]), kMicrons * size.rms_mm);
 }
@@ -101,6 +56,7 @@ Found spot_analysis(const AnalysisOptions& o) {
                     reach_mm =
                         std::max(reach_mm, std::fabs(ray.film_mm[k] - sizes.back().centroid_mm[k]));
     }
+    print_wave_spots(setup);
     std::string fields;
     for (size_t i = 0; i < drawn.size(); ++i) {
         fields += fmt::format("{}{:.4g}°", i ? ", " : "", setup.fields_deg[i]);
@@ -124,7 +80,6 @@ Found spot_analysis(const AnalysisOptions& o) {
 
 Found fan_analysis(const AnalysisOptions& o) {
     const FieldSetup setup = set_up_lit(o.field, {0.7});
-    const Section other = setup.section == Section::X ? Section::Y : Section::X;
     Found out;
     out.names = {"field_deg", "nm", "tangential", "stop_radii", "dx_mm", "dy_mm"};
     for (const double deg : setup.fields_deg) {
@@ -132,7 +87,7 @@ Found fan_analysis(const AnalysisOptions& o) {
         const PupilPoint chief = main.chief();
         const auto centre = main.trace({&chief, 1}, setup.film_mm, Clip::No);
         if (centre.empty()) refuse_dark(*setup.lens, deg);
-        for (const Section along : {setup.section, other})
+        for (const Section along : {setup.section, across(setup)})
             for (const SpectralLine& line : kSpectralLines) {
                 const bool tangential = along == setup.section;
                 PlotSeries series{{}, PlotStyle::Lines, {}};
@@ -160,30 +115,40 @@ Found fan_analysis(const AnalysisOptions& o) {
 Found mtf_analysis(const AnalysisOptions& o) {
     constexpr int side = 100, steps = 50;
     const FieldSetup setup = set_up_lit(o.field, {0, 0.7, 1});
-    const Section other = setup.section == Section::X ? Section::Y : Section::X;
+    const auto light = light_of(o, *setup.lens);
     Found out;
     out.names = {"field_deg", "cycles_per_mm", "tangential", "sagittal"};
+    std::vector<std::array<double, 2>> halfway;  // by rays, at half of the highest frequency
     for (const double deg : setup.fields_deg) {
-        std::vector<BundleRay> rays;
-        for (const SpectralLine& line : kSpectralLines) {
-            const auto of_line = traced(aim(setup, deg, line.nm), setup.film_mm, side);
-            if (of_line.empty()) refuse_dark(*setup.lens, deg);
-            append(rays, of_line);
+        std::vector<std::vector<BundleRay>> rays;
+        for (const LightLine& line : light) {
+            rays.push_back(traced(aim(setup, deg, line.nm), setup.film_mm, side));
+            if (rays.back().empty()) refuse_dark(*setup.lens, deg);
         }
+        std::optional<WaveContrast> waves;
+        if (o.wave) waves.emplace(require_waves(setup, deg, light), light);
+        const auto contrast = [&](double cycles, Section along) {
+            return waves ? waves->at(cycles, along) : ray_contrast(rays, light, cycles, along);
+        };
         PlotSeries tangential{{}, PlotStyle::Lines, fmt::format("{:.4g}° tangential", deg)};
         PlotSeries sagittal{{}, PlotStyle::Lines, fmt::format("{:.4g}° sagittal", deg)};
         for (int i = 0; i <= steps; ++i) {
             const double cycles = o.most_cycles * i / steps;
-            const double t = geometric_mtf(rays, cycles, setup.section);
-            const double s = geometric_mtf(rays, cycles, other);
+            const double t = contrast(cycles, setup.section), s = contrast(cycles, across(setup));
             tangential.points.push_back({cycles, t});
             sagittal.points.push_back({cycles, s});
             out.rows.push_back({deg, cycles, t, s});
         }
+        halfway.push_back({ray_contrast(rays, light, o.most_cycles / 2, setup.section),
+                           ray_contrast(rays, light, o.most_cycles / 2, across(setup))});
         out.plot.series.push_back(std::move(tangential));
         out.plot.series.push_back(std::move(sagittal));
     }
-    out.plot.title = title_of(*setup.lens, "geometric MTF (no diffraction), F + d + C");
+    print_wave_contrast(setup, light, o.most_cycles / 2, halfway);
+    std::string lines;
+    for (const LightLine& line : light) lines += (lines.empty() ? "" : " + ") + line.name;
+    out.plot.title =
+        title_of(*setup.lens, (o.wave ? "wave MTF, " : "geometric MTF (no diffraction), ") + lines);
     out.plot.x_label = "cycles per mm on the film";
     out.plot.y_label = "contrast";
     return out;
@@ -261,41 +226,11 @@ Found vignetting_analysis(const AnalysisOptions& o) {
         out.rows.push_back({heights[i], light[i], light[i] / light[0]});
         series.points.push_back({heights[i], 100 * light[i] / light[0]});
     }
-    out.plot = {.title = title_of(*setup.lens, "vignetting, wide open, line d"),
+    out.plot = {.title = title_of(*setup.lens, "vignetting, line d"),
                 .x_label = "height on the film (mm)",
                 .y_label = "irradiance against the middle (%)",
                 .series = {std::move(series)}};
     return out;
-}
-
-std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, const char* help,
-                                              bool with_fields, const Analysis& analyse,
-                                              const char* footer) {
-    auto options = std::make_shared<AnalysisOptions>();
-    CLI::App* command = lens.add_subcommand(name, help);
-    add_field_request(*command, options->field, with_fields);
-    command->add_option("-o,--output", options->plot, "plot to write, .svg or .png")->required();
-    command->add_option("--csv", options->csv, "the plot's numbers to write too");
-    command->footer(footer);
-    command->callback([options, analyse] {
-        const bool with_csv = !options->csv.empty();
-        std::vector<NamedFile> outputs{{"-o", options->plot}};
-        if (with_csv) outputs.push_back({"--csv", options->csv});
-        refuse_overwriting(outputs, options->field.request);
-        check_plot(options->plot);
-        if (with_csv) check_writable(options->csv);
-        const Found found = analyse(*options);
-        const auto& all = found.plot.series;
-        if (std::all_of(all.begin(), all.end(), [](const auto& s) { return s.points.empty(); }))
-            throw ArgumentError(options->field.request.lens, "",
-                                "too few rays reach the film for a plot");
-        attempt_all({[&] {
-                         if (with_csv)
-                             write_file_atomically(options->csv, csv_text(found.names, found.rows));
-                     },
-                     [&] { write_plot(options->plot, found.plot); }});
-    });
-    return options;
 }
 
 }  // namespace
@@ -307,12 +242,15 @@ void add_lens_analysis_commands(CLI::App& lens) {
     add_analysis(lens, "fan", "transverse aberrations across the aperture", true, fan_analysis,
                  "Tangential: along the field; sagittal: across it.");
     const auto mtf = add_analysis(
-        lens, "mtf", "geometric modulation transfer", true, mtf_analysis,
-        "Geometric: from rays alone, equal light of F, d and C. Diffraction, which is left out, "
-        "lowers it further. Tangential: contrast of lines that lie across the field.");
+        lens, "mtf", "modulation transfer by rays, or by waves", true, mtf_analysis,
+        "Geometric: from rays alone, without diffraction. Tangential: contrast of lines that lie "
+        "across the field. The table compares rays and waves at half of the highest frequency.");
     lens.get_subcommand("mtf")
         ->add_option("--cycles", mtf->most_cycles, "highest frequency, cycles per mm, default 100")
         ->transform(number_between(1e-3, 1e5));
+    lens.get_subcommand("mtf")->add_flag("--wave", mtf->wave,
+                                         "with diffraction (default: by rays alone)");
+    add_light(*lens.get_subcommand("mtf"), *mtf);
     add_analysis(lens, "distortion", "heights on the film against f tan(field)", true,
                  distortion_analysis,
                  "Of the ray through the middle of the stop, line d; f is the paraxial focal "
@@ -320,7 +258,7 @@ void add_lens_analysis_commands(CLI::App& lens) {
     const auto vignetting =
         add_analysis(lens, "vignetting", "irradiance over the film against its middle", false,
                      vignetting_analysis,
-                     "Of an even scene, wide open, line d: natural and mechanical vignetting and "
+                     "Of an even scene, line d: natural and mechanical vignetting and "
                      "the aberrations of the pupil together, by the camera that renders.");
     lens.get_subcommand("vignetting")
         ->add_option("--image-circle", vignetting->image_circle_mm,

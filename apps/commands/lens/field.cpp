@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/cli/choice.h"
+#include "apps/cli/console.h"
 #include "camera/bench/analysis.h"
 #include "camera/lens/blockage.h"
 #include "io/base/error.h"
@@ -34,6 +35,20 @@ LensBench in_focus(const Lens& lens, const FieldRequest& request, double distanc
                         lens.prescription().focus_group ? "the group that focuses" : "the lens");
 }
 
+std::shared_ptr<const Lens> at_fstop(const std::shared_ptr<const Lens>& lens,
+                                     const std::string& text) {
+    const double fnumber = parse_fnumber("--fstop", text, {1e-2, 1e6});
+    if (auto stopped = stopped_down(*lens, fnumber))
+        return std::make_shared<const Lens>(*std::move(stopped));
+    const auto stop = static_cast<size_t>(lens->stop());
+    print_notice(
+        fmt::format("warning: {} opens to f/{:.3g} at most, not to f/{:g}: an f-number is {}",
+                    lens->prescription().name,
+                    fnumber_of(*lens, lens->prescription().surfaces[stop].semi_diameter_mm),
+                    fnumber, kTracedFnumber));
+    return lens;
+}
+
 }  // namespace
 
 void add_field_request(CLI::App& app, FieldRequest& request, bool with_fields) {
@@ -56,14 +71,18 @@ void add_field_request(CLI::App& app, FieldRequest& request, bool with_fields) {
     app.add_option("--film-shift", request.film_shift,
                    "mm that the film lies behind that place, or best: where the spot on the axis "
                    "has the least RMS radius (default 0)");
+    app.add_option("--fstop", request.fstop,
+                   "f-number, as 8 or f/8: the iris closes (default: as wide as the lens's file "
+                   "says)");
     add_choice<std::string>(app, "--section", request.section, {{"y", "y"}, {"x", "x"}},
                             "the side to which the field is: y (default), x");
 }
 
 FieldSetup set_up(const FieldRequest& request, const std::vector<double>& shares) {
-    FieldSetup out{LensBench(open_lens(request.request)),
-                   {},
-                   request.section == "x" ? Section::X : Section::Y};
+    std::shared_ptr<const Lens> lens = open_lens(request.request);
+    if (!request.fstop.empty()) lens = at_fstop(lens, request.fstop);
+    FieldSetup out{
+        LensBench(std::move(lens)), {}, request.section == "x" ? Section::X : Section::Y};
     if (!request.focus.empty())
         out.distance_mm = 1e3 * double(parse_focus_distance_m("--focus", request.focus));
     const double widest_deg = std::isfinite(out.distance_mm) ? kWidestNear_deg : kWidest_deg;

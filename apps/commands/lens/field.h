@@ -21,12 +21,14 @@ struct FieldRequest {
     std::string focus;   ///< metres
     std::optional<FocusBy> focus_by;
     std::string film_shift;  ///< mm, or best
+    std::string fstop;
     std::string section = "y";
 };
-/// Adds the options of a lens request, --focus, --focus-by, --film-shift, --section; and --field.
+/// Adds the options of a lens request, --focus, --focus-by, --film-shift, --section, --fstop; and
+/// --field.
 void add_field_request(CLI::App&, FieldRequest&, bool with_fields = true);
 
-/// A lens in focus; as filed where the request is silent.
+/// A lens stopped down and in focus, as far as asked; else as filed.
 struct FieldSetup : LensBench {
     std::vector<double> fields_deg;
     Section section = Section::Y;

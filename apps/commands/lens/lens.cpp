@@ -41,6 +41,8 @@ void add_lens_commands(CLI::App& app) {
     add_lens_table_commands(*lens);
     add_lens_trace_commands(*lens);
     add_lens_analysis_commands(*lens);
+    add_lens_wave_commands(*lens);
+    add_lens_focus_commands(*lens);
     add_lens_light_commands(*lens);
 }
 

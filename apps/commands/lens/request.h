@@ -29,6 +29,9 @@ void refuse_overwriting(const std::vector<NamedFile>& outputs, const LensRequest
 void add_lens_table_commands(CLI::App& lens);     ///< list, show, check
 void add_lens_trace_commands(CLI::App& lens);     ///< draw, trace
 void add_lens_analysis_commands(CLI::App& lens);  ///< spot, fan, mtf, distortion, vignetting
-void add_lens_light_commands(CLI::App& lens);     ///< transmittance, budget, ghosts
+void add_lens_wave_commands(CLI::App& lens);      ///< wavefront, psf
+/// through-focus, field-curvature, focal-shift, lateral-colour
+void add_lens_focus_commands(CLI::App& lens);
+void add_lens_light_commands(CLI::App& lens);  ///< transmittance, budget, ghosts
 
 }  // namespace petzval

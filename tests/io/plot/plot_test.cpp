@@ -113,6 +113,31 @@ TEST(Plot, StepsReachHalfOfTheWayAndBeyondTheEnds) {
 }
 
 // What gnuplot or a shell would take for an order.
+// The least and the greatest value have the ends of the scale's colours; what is not finite has
+// none.
+TEST(Plot, CellsHaveTheColoursOfTheirValues) {
+    const TemporaryFolder folder;
+    Plot p{.title = "cells", .x_label = "x", .y_label = "y", .series = {}, .value_label = "waves"};
+    p.series = {{.points = {{0, 0}, {1, 0}, {0, 1}, {1, 1}},
+                 .style = PlotStyle::Cells,
+                 .values = {-2, NAN, 1, 3}}};
+    write_plot(folder / "a.png", p);
+    const Picture png = read_picture(folder / "a.png");
+    const auto has = [&](float r, float g, float b) {
+        int found = 0;
+        for (size_t i = 0; i + 2 < png.pixels.size(); i += png.channels.size())
+            found += std::fabs(png.pixels[i] - r) < 0.03f &&
+                     std::fabs(png.pixels[i + 1] - g) < 0.03f &&
+                     std::fabs(png.pixels[i + 2] - b) < 0.03f;
+        return found;
+    };
+    const int cell = 300 * 200;  // of 960 x 600
+    EXPECT_GT(has(0x44 / 255.f, 0x01 / 255.f, 0x54 / 255.f), cell);
+    EXPECT_GT(has(0xfd / 255.f, 0xe7 / 255.f, 0x25 / 255.f), cell);
+    write_plot(folder / "a.svg", p);
+    EXPECT_NE(text_of(folder / "a.svg").find("waves"), std::string::npos);
+}
+
 TEST(Plot, ShowsTextsLetterByLetter) {
     const TemporaryFolder folder;
     const std::string harm =

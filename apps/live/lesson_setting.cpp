@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/live/lesson_setting.h"
 
-#include "camera/lens/focus.h"
-
 #include "apps/request/value_error.h"
 #include "camera/bench/analysis.h"
 #include "camera/bench/ray_path.h"
+#include "camera/lens/focus.h"
 
 namespace petzval {
 

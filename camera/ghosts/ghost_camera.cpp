@@ -3,17 +3,14 @@
 
 #include <algorithm>
 
-#include "core/sampling/warp.h"
 #include "core/spectrum/glass.h"
 
 namespace petzval {
 namespace {
 
-/// Share of the samples that get a ray over all pairs: a ghost is darker than the picture, and
-/// changes slowly over it.
-constexpr float kOverAll = 0.125f;
-/// Share of the choice of a pair that is the same for all of them.
-constexpr float kEven = 0.1f;
+/// Shares of the samples that get a ray over all pairs, and one through a region: a ghost is darker
+/// than the picture, and changes slowly over it.
+constexpr float kOverAll = 0.125f, kThroughRegion = 0.25f;
 /// What surfaces in front of a lamp reflect is left to the rays over all pairs, mostly.
 constexpr float kEffortBesideLamp = 1.f / 16;
 
@@ -32,19 +29,9 @@ GhostCamera::GhostCamera(std::shared_ptr<const Camera> in_order, GhostOptics opt
                          GhostRegions regions)
     : in_order_(std::move(in_order)),
       optics_(std::move(optics)),
+      pupils_(optics_),
       regions_(std::move(regions)),
-      chances_(optics_.light_of_pairs()),
-      line_d_(optics_.lens().exact_indices(splat(float(kLineD_nm)))) {
-    float sum = 0;
-    for (float& chance : chances_) {
-        chance = (1 - kEven) * chance + kEven / float(chances_.size());
-        sum += chance;
-    }
-    for (float& chance : chances_) {
-        chance /= sum;
-        up_to_.push_back(chance + (up_to_.empty() ? 0.f : up_to_.back()));
-    }
-}
+      line_d_(optics_.lens().exact_indices(splat(float(kLineD_nm)))) {}
 
 void GhostCamera::sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
                              std::span<CameraSample> out) const {
@@ -52,7 +39,7 @@ void GhostCamera::sample_all(std::span<const FilmPoint> points, std::span<const 
         in_order_->sample_all(points, bands, out);
     else
         std::ranges::fill(out, CameraSample());
-    if (chances_.empty()) return;
+    if (optics_.pairs().empty()) return;
     for (size_t i = 0; i < points.size(); ++i) add_ghosts(points[i], bands[i], out[i]);
 }
 
@@ -69,35 +56,36 @@ void GhostCamera::add_ghosts(const FilmPoint& point, const Bands& bands, CameraS
     if (!shared)
         for (int i = 0; i < 4; ++i) place.wave[i] = wave_of(nm[i]);
     const Sampler& sampler = point.sampler;
-    if (const auto drawn =
-            regions_.draw(place.film_mm, place.wave[bands.hero], sampler.get1(Dim::GhostPick),
-                          sampler.get2(Dim::GhostPoint)))
-        add_rays(place, *drawn, bands.on, kEffortBesideLamp, out);
-    const float over_all = sampler.get1(Dim::GhostPick, 1) / kOverAll;
-    if (!(over_all < 1)) return;
-    const auto pair = std::min(size_t(std::ranges::upper_bound(up_to_, over_all) - up_to_.begin()),
-                               up_to_.size() - 1);
-    const V2f rear = uniform_disk(sampler.get2(Dim::GhostPoint, 1)) * float(optics_.rear_mm());
-    add_rays(place, {uint32_t(pair), rear}, shared ? bands.on : only_lane(bands.hero), 1, out);
+    const float through = sampler.get1(Dim::GhostPick) / kThroughRegion,
+                over_all = sampler.get1(Dim::GhostPick, 1) / kOverAll;
+    if (through < 1)
+        if (const auto drawn = regions_.draw(place.film_mm, place.wave[bands.hero], through,
+                                             sampler.get2(Dim::GhostPoint)))
+            add_rays(place, *drawn, bands.on, kEffortBesideLamp, out);
+    if (over_all < 1)
+        add_rays(place, pupils_.draw(place.film_mm, over_all, sampler.get2(Dim::GhostPoint, 1)),
+                 shared ? bands.on : only_lane(bands.hero), 1, out);
 }
 
 // A point that one lane's wavelength led to may have been drawn for each of them: the lanes take
 // turns as heroes, and their mean density counts.
-void GhostCamera::add_rays(const Place& place, const GhostRegions::Drawn& drawn, m4 lanes,
-                           float effort, CameraSample& out) const {
+void GhostCamera::add_rays(const Place& place, const GhostDraw& drawn, m4 lanes, float effort,
+                           CameraSample& out) const {
     const float rear_mm = float(optics_.rear_mm());
     if (!(drawn.rear_mm.length2() <= rear_mm * rear_mm)) return;
     const auto found = optics_.ray(optics_.pairs()[drawn.pair], place.film_mm, drawn.rear_mm,
                                    place.indices, place.coats_nm, lanes);
     if (!found) return;
     const int on = lane_count(place.bands.on);
-    float density = kOverAll * chances_[drawn.pair] / optics_.rear_mm2();
+    float through = 0;
     if (place.shared)
-        density += regions_.density(place.film_mm, 0, drawn);
+        through = regions_.density(place.film_mm, 0, drawn);
     else
         for (int i = 0; i < 4; ++i)
             if (place.bands.on[i])
-                density += regions_.density(place.film_mm, place.wave[i], drawn) / float(on);
+                through += regions_.density(place.film_mm, place.wave[i], drawn) / float(on);
+    const float density =
+        kOverAll * pupils_.density(place.film_mm, drawn) + kThroughRegion * through;
     const LensCamera& camera = optics_.camera();
     const float scale = camera.gain() * found->sr_per_mm2 / (density * effort) * float(on) /
                         float(lane_count(lanes));

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "camera/ghosts/ghost_regions.h"
 
@@ -18,24 +17,24 @@ class GhostCamera final : public Camera {
     /// in_order: brings the light that no surface reflects, through the same lens; nullptr: ghosts
     /// alone are shown.
     GhostCamera(std::shared_ptr<const Camera> in_order, GhostOptics, GhostRegions);
+    GhostCamera(const GhostCamera&) = delete;
+    GhostCamera& operator=(const GhostCamera&) = delete;
 
     [[nodiscard]] CameraSample sample(const FilmPoint& point, const Bands& bands) const override {
         return one_of_all(point, bands);
     }
     void sample_all(std::span<const FilmPoint>, std::span<const Bands>,
                     std::span<CameraSample>) const override;
-    [[nodiscard]] const GhostRegions& regions() const { return regions_; }
 
   private:
     struct Place;
-    void add_rays(const Place&, const GhostRegions::Drawn&, m4 lanes, float effort,
-                  CameraSample&) const;
+    void add_rays(const Place&, const GhostDraw&, m4 lanes, float effort, CameraSample&) const;
     void add_ghosts(const FilmPoint&, const Bands&, CameraSample&) const;
 
     std::shared_ptr<const Camera> in_order_;
     GhostOptics optics_;
+    GhostPupils pupils_;
     GhostRegions regions_;
-    std::vector<float> chances_, up_to_;  ///< of each pair; and the sum of those up to it
     LensIndices<f4> line_d_;
 };
 

@@ -5,19 +5,12 @@
 #include <array>
 
 #include "camera/ghosts/lens_face.h"
-#include "core/sampling/warp.h"
 #include "core/spectrum/glass.h"
 
 namespace petzval {
 namespace {
 
 constexpr std::array<double, 4> kVisible_nm{450, 517, 583, 650};
-
-f4 visible_nm() {
-    f4 nm;
-    for (int i = 0; i < 4; ++i) nm[i] = float(kVisible_nm[size_t(i)]);
-    return nm;
-}
 
 std::vector<GhostPair> pairs_of(const Lens& lens, const LensCoats& coats) {
     std::vector<GhostPair> out;
@@ -113,28 +106,6 @@ float GhostOptics::reflects(GhostPair pair) const {
     for (const double nm : kVisible_nm)
         sum += along_axis(pair.first, nm) * along_axis(pair.second, nm);
     return static_cast<float>(sum / kVisible_nm.size());
-}
-
-std::vector<float> GhostOptics::light_of_pairs() const {
-    constexpr uint32_t kRays = 256;
-    const LensIndices<f4> line_d = lens().exact_indices(splat(float(kLineD_nm)));
-    std::vector<float> out;
-    float all = 0;
-    for (uint32_t k = 0; k < pairs_.size(); ++k) {
-        float sum = 0;
-        for (uint32_t n = 0; n < kRays; ++n) {
-            const Sampler sampler(SamplerKind::Owen, 0, {int(k), 0, n});
-            const V2f film_mm = camera_->film_mm(sampler.get2(Dim::Film));
-            const V2f rear_mm = uniform_disk(sampler.get2(Dim::Lens)) * float(rear_mm_);
-            if (const auto found =
-                    ray(pairs_[k], film_mm, rear_mm, line_d, visible_nm(), m4{-1, -1, -1, -1}))
-                sum += hsum(found->share) * found->sr_per_mm2;
-        }
-        out.push_back(sum);
-        all += sum;
-    }
-    for (float& light : out) light = all > 0 ? light / all : 0;
-    return out;
 }
 
 }  // namespace petzval

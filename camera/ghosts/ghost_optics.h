@@ -34,9 +34,6 @@ class GhostOptics {
     /// Radius of the last surface, and its area across the axis.
     [[nodiscard]] double rear_mm() const { return rear_mm_; }
     [[nodiscard]] float rear_mm2() const;
-    /// Light of each pair in a picture of an even scene, over that of all pairs, about: by rays
-    /// that are drawn with a fixed seed.
-    [[nodiscard]] std::vector<float> light_of_pairs() const;
     /// Product of both surfaces' reflectances for light along the axis: mean of the visible.
     [[nodiscard]] float reflects(GhostPair) const;
 

@@ -36,12 +36,6 @@ std::optional<GhostLamp> lamp_of(const SmallFeature& f, const LensCamera& camera
                      f.radiance * f.area_m2 / 2 / (away_m * away_m)};
 }
 
-bool is_in(const GhostRegion& region, V2f off, float times) {
-    const V2f across(-region.long_axis.y, region.long_axis.x);
-    return std::fabs(off.dot(region.long_axis)) <= times * region.half.x &&
-           std::fabs(off.dot(across)) <= times * region.half.y;
-}
-
 }  // namespace
 
 GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeature> things) {
@@ -61,7 +55,7 @@ GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeatu
         for (uint32_t pair = 0; pair < optics.pairs().size(); ++pair)
             search.find(pair, lamp, regions_);
     std::erase_if(regions_, [&](const GhostRegion& r) {
-        return !(r.light > 0) || 4 * r.half.x * r.half.y > kWidest * optics.rear_mm2();
+        return !(r.light > 0) || r.area_mm2() > kWidest * optics.rear_mm2();
     });
     film_mm_ = V2f(float(optics.camera().input().film_width_mm),
                    float(optics.camera().input().film_height_mm));
@@ -138,7 +132,8 @@ float GhostRegions::light_of(const Group& group, V2f film_mm) const {
     return sum;
 }
 
-auto GhostRegions::draw(V2f film_mm, float wave, float pick, V2f u) const -> std::optional<Drawn> {
+auto GhostRegions::draw(V2f film_mm, float wave, float pick, V2f u) const
+    -> std::optional<GhostDraw> {
     const auto groups = groups_at(film_mm);
     if (groups.empty()) return {};
     auto group = std::ranges::upper_bound(groups, pick, {}, &Group::up_to);
@@ -156,13 +151,10 @@ auto GhostRegions::draw(V2f film_mm, float wave, float pick, V2f u) const -> std
     if (!chosen) return {};
     const bool wide = u.x < kWideShare;
     const float x = wide ? u.x / kWideShare : (u.x - kWideShare) / (1 - kWideShare);
-    const V2f at = V2f(2 * x - 1, 2 * u.y - 1) * chosen->half * (wide ? kWider : 1.f);
-    const V2f across(-chosen->long_axis.y, chosen->long_axis.x);
-    return Drawn{chosen->pair,
-                 chosen->middle(film_mm, wave) + chosen->long_axis * at.x + across * at.y};
+    return GhostDraw{chosen->pair, chosen->at(film_mm, wave, {x, u.y}, wide ? kWider : 1.f)};
 }
 
-float GhostRegions::density(V2f film_mm, float wave, const Drawn& drawn) const {
+float GhostRegions::density(V2f film_mm, float wave, const GhostDraw& drawn) const {
     const auto groups = groups_at(film_mm);
     const auto group = std::ranges::lower_bound(groups, drawn.pair, {}, &Group::pair);
     if (group == groups.end() || group->pair != drawn.pair) return 0;
@@ -171,11 +163,10 @@ float GhostRegions::density(V2f film_mm, float wave, const Drawn& drawn) const {
         const GhostRegion& r = regions_[members_[i]];
         if (!r.serves(film_mm)) continue;
         all += r.light;
-        const V2f off = drawn.rear_mm - r.middle(film_mm, wave);
-        if (!is_in(r, off, kWider)) continue;
-        const float per_mm2 = r.light / (4 * r.half.x * r.half.y);
-        sum +=
-            per_mm2 * (kWideShare / (kWider * kWider) + (is_in(r, off, 1) ? 1 - kWideShare : 0.f));
+        if (!r.contains(film_mm, wave, drawn.rear_mm, kWider)) continue;
+        const bool within = r.contains(film_mm, wave, drawn.rear_mm);
+        sum += r.light / r.area_mm2() *
+               (kWideShare / (kWider * kWider) + (within ? 1 - kWideShare : 0.f));
     }
     const float before = group == groups.begin() ? 0 : (group - 1)->up_to;
     return sum > 0 ? sum / all * (group->up_to - before) : 0.f;

@@ -20,86 +20,13 @@ constexpr uint32_t kBatches = 4, kFirstBatches = 32;
 /// lamp: fewer than a share; the last times, fewer than another. And at first where few of its rays
 /// pass all rims.
 constexpr int kDivisions = 6, kLastDivisions = 1, kDivisionsByRims = 2;
-constexpr double kGood = 0.15, kBad = 0.02;
-/// Beyond what the rays of a part show, as a share of it: film points, and errors of straight lines
-/// and so many times that where few points of a region see the lamp.
-constexpr double kFilmMargin = 0.25, kErrorMargin = 0.5, kMarginsWhereBent = 2;
-constexpr size_t kUnknowns = 6;
+constexpr double kBad = 0.02;
 
 /// Square of the first surface, across the axis.
 struct Part {
     V2d corner_mm;
     double side_mm;
 };
-
-/// A ray of a lamp that reached the film's plane, lane by lane.
-struct Record {
-    V2d film_mm, rear_mm;
-    V2d on_lamp;  ///< of its disc of radius 1
-    double wave;
-    double
-        light_mm2;  ///< that enters with it; 0 where a rim or the iris stops it, or the film ends
-};
-
-/// Least squares for both coordinates of the point on the last surface, by the film point, the
-/// point of the lamp and the wavelength.
-class StraightFit {
-  public:
-    explicit StraightFit(const std::vector<Record>& records) {
-        for (const Record& r : records) film_ += r.film_mm / double(records.size());
-        std::array<std::array<double, kUnknowns + 2>, kUnknowns> m{};
-        for (const Record& r : records) {
-            const auto a = terms(r);
-            for (size_t i = 0; i < kUnknowns; ++i) {
-                for (size_t j = 0; j < kUnknowns; ++j) m[i][j] += a[i] * a[j];
-                m[i][kUnknowns] += a[i] * r.rear_mm.x;
-                m[i][kUnknowns + 1] += a[i] * r.rear_mm.y;
-            }
-        }
-        // What the rays do not tell apart counts as no change.
-        for (size_t i = 1; i < kUnknowns; ++i) m[i][i] += 1e-9 * (m[0][0] + m[i][i]);
-        for (size_t i = 0; i < kUnknowns; ++i) {
-            for (size_t j = 0; j < kUnknowns; ++j) {
-                if (j == i) continue;
-                const double by = m[j][i] / m[i][i];
-                for (size_t k = i; k < kUnknowns + 2; ++k) m[j][k] -= by * m[i][k];
-            }
-        }
-        for (size_t i = 0; i < kUnknowns; ++i)
-            by_[i] = V2d(m[i][kUnknowns], m[i][kUnknowns + 1]) / m[i][i];
-    }
-    [[nodiscard]] V2d film_mm() const { return film_; }
-    [[nodiscard]] V2d rear_mm() const { return by_[0]; }
-    [[nodiscard]] V2d by_film_x() const { return by_[1]; }
-    [[nodiscard]] V2d by_film_y() const { return by_[2]; }
-    [[nodiscard]] V2d by_lamp_x() const { return by_[3]; }
-    [[nodiscard]] V2d by_lamp_y() const { return by_[4]; }
-    [[nodiscard]] V2d by_wave() const { return by_[5]; }
-    [[nodiscard]] V2d error(const Record& r) const {
-        V2d out = r.rear_mm;
-        const auto a = terms(r);
-        for (size_t i = 0; i < kUnknowns; ++i) out -= by_[i] * a[i];
-        return out;
-    }
-
-  private:
-    [[nodiscard]] std::array<double, kUnknowns> terms(const Record& r) const {
-        const V2d film = r.film_mm - film_;
-        return {1, film.x, film.y, r.on_lamp.x, r.on_lamp.y, r.wave};
-    }
-
-    V2d film_{0.};
-    std::array<V2d, kUnknowns> by_{};
-};
-
-/// Long axis of the ellipse into which two vectors make the unit disc, and its half axes.
-std::pair<V2d, V2d> ellipse_of(V2d a, V2d b) {
-    const double xx = a.x * a.x + b.x * b.x, yy = a.y * a.y + b.y * b.y, xy = a.x * a.y + b.x * b.y;
-    const double mean = (xx + yy) / 2, apart = std::hypot((xx - yy) / 2, xy);
-    const double angle = std::atan2(2 * xy, xx - yy) / 2;
-    return {{std::cos(angle), std::sin(angle)},
-            {std::sqrt(mean + apart), std::sqrt(std::max(mean - apart, 0.))}};
-}
 
 /// Rays of a lamp by way of a pair.
 class LampRays {
@@ -123,18 +50,19 @@ class LampRays {
     }
     /// Rays through a square of the first surface; none where it lies beside.
     /// Clip::Yes: only those that no rim stops.
-    [[nodiscard]] std::vector<Record> through(const Part& part, uint32_t batches, Clip clip) const {
-        std::vector<Record> out;
+    [[nodiscard]] std::vector<GhostRecord> through(const Part& part, uint32_t batches,
+                                                   Clip clip) const {
+        std::vector<GhostRecord> out;
         const double half = part.side_mm / 2;
         if ((part.corner_mm + V2d(half)).length() > reach_mm_ + 1.5 * half) return out;
         for (uint32_t batch = 0; batch < batches; ++batch) trace(part, draws_[batch], clip, out);
-        for (Record& r : out) r.light_mm2 /= 8 * batches;
+        for (GhostRecord& r : out) r.light_mm2 /= 8 * batches;
         return out;
     }
     [[nodiscard]] Part whole() const { return {V2d(-reach_mm_), 2 * reach_mm_}; }
 
   private:
-    void trace(const Part&, const LampDraws&, Clip, std::vector<Record>&) const;
+    void trace(const Part&, const LampDraws&, Clip, std::vector<GhostRecord>&) const;
 
     const GhostOptics& optics_;
     const Lens& lens_;
@@ -147,7 +75,7 @@ class LampRays {
 };
 
 void LampRays::trace(const Part& part, const LampDraws& draws, Clip clip,
-                     std::vector<Record>& out) const {
+                     std::vector<GhostRecord>& out) const {
     LensRay<f8> ray;
     std::array<float, 8> enters{};
     for (int i = 0; i < 8; ++i) {
@@ -199,42 +127,6 @@ void LampRays::trace(const Part& part, const LampDraws& draws, Clip clip,
     }
 }
 
-/// The region of a part's rays, and shares about: of its points that see the lamp, and of the rays
-/// that pass all rims.
-struct PartRegion {
-    GhostRegion region{};
-    double sees = 0, open = 0;
-};
-PartRegion region_of(const std::vector<Record>& records) {
-    const StraightFit fit(records);
-    auto [axis, half] = ellipse_of(fit.by_lamp_x(), fit.by_lamp_y());
-    const double of_lamp = kPi / 4 * half.x * half.y;
-    const V2d across(-axis.y, axis.x);
-    V2d error(0.), low = records.front().film_mm, high = low;
-    double open = 0;
-    for (const Record& r : records) {
-        const V2d e = fit.error(r);
-        error.x = std::max(error.x, std::fabs(e.dot(axis)));
-        error.y = std::max(error.y, std::fabs(e.dot(across)));
-        low = {std::min(low.x, r.film_mm.x), std::min(low.y, r.film_mm.y)};
-        high = {std::max(high.x, r.film_mm.x), std::max(high.y, r.film_mm.y)};
-        open += r.light_mm2 > 0;
-    }
-    constexpr double kLeast_mm = 1e-4;  // what floats err
-    half += error * (1 + kErrorMargin) + V2d(kLeast_mm);
-    PartRegion found{{}, of_lamp / (half.x * half.y), open / (8 * kBatches)};
-    const double times = found.sees < kGood ? kMarginsWhereBent : 1;
-    half += error * kErrorMargin * (times - 1);
-    const V2d margin = (high - low) * (kFilmMargin * times) + V2d(kLeast_mm);
-    GhostRegion& out = found.region;
-    out.film_low = V2f(low - margin), out.film_high = V2f(high + margin);
-    out.film = V2f(fit.film_mm()), out.rear = V2f(fit.rear_mm());
-    out.by_x = V2f(fit.by_film_x()), out.by_y = V2f(fit.by_film_y());
-    out.by_wave = V2f(fit.by_wave());
-    out.long_axis = V2f(axis), out.half = V2f(half);
-    return found;
-}
-
 /// Search of one pair's regions.
 class PairSearch {
   public:
@@ -270,7 +162,7 @@ void PairSearch::find(const Part& whole, int count, int divisions, uint32_t batc
     std::vector<double> light_mm2, lit;
     for (int k = 0; k < count * count; ++k) {
         light_mm2.push_back(0), lit.push_back(0);
-        for (const Record& r : rays_.through(part_of(k), batches, Clip::Yes)) {
+        for (const GhostRecord& r : rays_.through(part_of(k), batches, Clip::Yes)) {
             light_mm2.back() += r.light_mm2;
             lit.back() += r.light_mm2 > 0;
         }
@@ -285,12 +177,12 @@ void PairSearch::find(const Part& whole, int count, int divisions, uint32_t batc
     for (int k = 0; k < count * count; ++k) {
         const double near = light_near(k), light = light_mm2[size_t(k)];
         if (!(near > 0)) continue;
-        const std::vector<Record> records = rays_.through(part_of(k), kBatches, Clip::No);
-        const bool tells = records.size() > kUnknowns + 2;
-        auto [region, sees, open] = tells ? region_of(records) : PartRegion{};
-        const bool by_rims = open < kGood && divisions > kDivisions - kDivisionsByRims;
+        const std::vector<GhostRecord> records = rays_.through(part_of(k), kBatches, Clip::No);
+        const bool tells = records.size() >= kLeastRecords;
+        auto [region, sees, open] = tells ? straight_region(records) : StraightRegion{};
+        const bool by_rims = open < kSeesEnough && divisions > kDivisions - kDivisionsByRims;
         if (divisions > 0 && light > 0 &&
-            (sees < (divisions > kLastDivisions ? kGood : kBad) || by_rims)) {
+            (sees < (divisions > kLastDivisions ? kSeesEnough : kBad) || by_rims)) {
             const size_t before = out_.size();
             // As many rays as it takes to meet the light again.
             const double rays = 8 * batches / lit[size_t(k)];

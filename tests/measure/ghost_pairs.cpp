@@ -85,7 +85,7 @@ struct Draws {
 Draws draw(const Subject& of, uint32_t count, Pairs& pairs) {
     const GhostOptics optics(of.camera);
     const GhostRegions regions(optics, {&of.sun, 1});
-    const std::vector<float> chances = optics.light_of_pairs();
+    const GhostPupils pupils(optics);
     const LensCameraInput& in = of.camera->input();
     const double film_mm2 = in.film_width_mm * in.film_height_mm;
     const f4 nm = splat(float(kLineD_nm));
@@ -104,7 +104,7 @@ Draws draw(const Subject& of, uint32_t count, Pairs& pairs) {
             continue;
         const double light = double(found->share[0] * found->sr_per_mm2),
                      density = double(regions.density(film, 0, *at)), value = light / density,
-                     blind = double(chances[at->pair] / optics.rear_mm2());
+                     blind = double(pupils.density(film, *at));
         PairSums& sums = pairs[{pair.first, pair.second}];
         sums.drawn += value * film_mm2;
         sums.drawn2 += value * value * film_mm2 * film_mm2;

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pupils of the ghosts of a lens: draws of rays that bring the light of an even scene.
+#pragma once
+
+#include <vector>
+
+#include "camera/ghosts/ghost_optics.h"
+#include "camera/ghosts/ghost_region.h"
+
+namespace petzval {
+
+/// A pair of GhostOptics::pairs(), by number, and a point beside the axis on the last surface.
+struct GhostDraw {
+    uint32_t pair;
+    V2f rear_mm;
+};
+
+class GhostPupils {
+  public:
+    /// The optics must outlive it. For each pair, rays with a fixed seed tell where those that pass
+    /// the iris cross the last surface, and how much light they bring.
+    explicit GhostPupils(const GhostOptics&);
+
+    /// Drawn pair and point for a film point: the whole of the last surface, and mostly where the
+    /// iris is seen through. pick in [0, 1), u in [0, 1)^2.
+    [[nodiscard]] GhostDraw draw(V2f film_mm, float pick, V2f u) const;
+    /// Density of a draw, 1/mm^2; above 0 on all of the last surface.
+    [[nodiscard]] float density(V2f film_mm, const GhostDraw&) const;
+
+  private:
+    [[nodiscard]] GhostRegion region_of(GhostPair) const;
+    [[nodiscard]] GhostRegion region_at(GhostPair, int crossing) const;
+    [[nodiscard]] std::vector<GhostRecord> crossings(GhostPair, int crossing,
+                                                     const GhostRegion&) const;
+    [[nodiscard]] float light_of(uint32_t pair, const GhostRegion&) const;
+
+    const GhostOptics& optics_;
+    LensIndices<f8> line_d_;
+    std::vector<GhostRegion> regions_;
+    std::vector<float> chances_, up_to_;  ///< of each pair; and the sum of those up to it
+};
+
+}  // namespace petzval

@@ -29,7 +29,7 @@ bool shines_in(const SmallFeature& lamp, const Pose& pose, const Bvh& bvh) {
 }  // namespace
 
 std::shared_ptr<const Camera> with_ghosts(const CameraRequest& asked, const View& view,
-                                          const Scene& scene) {
+                                          const Scene& scene, const Bvh& bvh) {
     const auto lens = traced_lens(view);
     const bool only = asked.ghosts == GhostUse::Only;
     if (!lens || asked.ghosts == GhostUse::Off) return view.camera;
@@ -41,7 +41,12 @@ std::shared_ptr<const Camera> with_ghosts(const CameraRequest& asked, const View
                             "shows light that two surfaces of the lens reflect, and here none "
                             "do: give ⟨coating⟩ year or another, and a lens of more surfaces");
     }
-    GhostRegions regions(optics, small_features_of(scene));
+    // A lamp that is hidden from the lens, or behind it, may show a part: it comes last.
+    constexpr double kHidden = 0.01;
+    std::vector<SmallFeature> things = small_features_of(scene);
+    for (SmallFeature& thing : things)
+        if (!shines_in(thing, lens->pose(), bvh)) thing.radiance *= kHidden;
+    GhostRegions regions(optics, things);
     return std::make_shared<GhostCamera>(only ? nullptr : view.camera, std::move(optics),
                                          std::move(regions));
 }

@@ -14,7 +14,7 @@ namespace petzval {
 /// there are none to show. Throws ArgumentError where ghosts alone are asked for and no surface
 /// reflects.
 [[nodiscard]] std::shared_ptr<const Camera> with_ghosts(const CameraRequest&, const View&,
-                                                        const Scene&);
+                                                        const Scene&, const Bvh&);
 
 /// Remark that a small lamp shines into a lens whose coating reflects nothing; nothing where none
 /// does.

@@ -242,7 +242,7 @@ void compose_camera(const SceneRequest& asked, const RenderSetup* like,
             aims->set_targets(view.targets);
             if (view.targets) view.camera = std::move(aims);
         }
-    view.camera = with_ghosts(asked.camera, view, *prepared.scene);
+    view.camera = with_ghosts(asked.camera, view, *prepared.scene, *prepared.bvh);
     next_step();
     view.camera = moved(std::move(view.camera), view);
 }

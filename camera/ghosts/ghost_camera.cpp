@@ -91,7 +91,7 @@ void GhostCamera::add_rays(const Place& place, const GhostDraw& drawn, m4 lanes,
                         float(lane_count(lanes));
     const auto add = [&](m4 of, int lane) {
         CameraPath& path = out.add();
-        path.ray = camera.in_world(found->ray, lane);
+        path.ray = camera.in_world(lane_of(found->ray, lane));
         path.lanes = of;
         path.weight = zero_off(of, found->share * splat(scale));
         path.mis_weight = effort;

@@ -12,9 +12,12 @@ namespace {
 
 /// Share of the choice of a pair that is the same for all of them, and of the points that are drawn
 /// from all of the last surface.
-constexpr float kEven = 0.1f, kWhole = 0.25f;
-constexpr uint32_t kBatches = 16, kRays = 256;
-/// Rays that pass so many radii of the iris beside its middle still tell where it is seen.
+constexpr float kEven = 0.25f, kWhole = 0.25f;
+constexpr uint32_t kPupilBatches = 12, kRays = 512;
+constexpr int kSteps = 4;
+constexpr size_t kNearest = 24;
+/// Rays that pass so many radii of the iris beside its middle still tell where it is seen; and so
+/// many of the nearest, where these are fewer.
 constexpr double kBeside = 1.5;
 
 bool is_after(const GhostRegion& a, const GhostRegion& b) {
@@ -27,8 +30,9 @@ GhostPupils::GhostPupils(const GhostOptics& optics)
     : optics_(optics), line_d_(optics.lens().exact_indices(splat8(float(kLineD_nm)))) {
     float all = 0;
     for (uint32_t k = 0; k < optics.pairs().size(); ++k) {
-        regions_.push_back(region_of(optics.pairs()[k]));
-        chances_.push_back(light_of(k, regions_.back()));
+        for (int cell = 0; cell < kCells; ++cell)
+            regions_.push_back(region_of(optics.pairs()[k], cell));
+        chances_.push_back(light_of(k));
         all += chances_.back();
     }
     float sum = 0;
@@ -39,47 +43,63 @@ GhostPupils::GhostPupils(const GhostOptics& optics)
     }
 }
 
-GhostRegion GhostPupils::region_of(GhostPair pair) const {
-    GhostRegion best = region_at(pair, 0);
+int GhostPupils::cell_of(V2f film) {
+    const auto cell = [](float at, int count) {
+        return std::clamp(static_cast<int>(at * static_cast<float>(count)), 0, count - 1);
+    };
+    return cell(film.y, kDown) * kAcross + cell(film.x, kAcross);
+}
+
+V2f GhostPupils::film_mm(int cell, V2f u) const {
+    return optics_.camera().film_mm((V2f(float(cell % kAcross), float(cell / kAcross)) + u) /
+                                    V2f(kAcross, kDown));
+}
+
+const GhostRegion& GhostPupils::region(uint32_t pair, V2f film_mm) const {
+    return regions_[pair * kCells + size_t(cell_of(optics_.camera().film_of(film_mm)))];
+}
+
+GhostRegion GhostPupils::region_of(GhostPair pair, int cell) const {
+    GhostRegion best = region_at(pair, cell, 0);
     // The stop lies between the two: light crosses it three times.
     if (pair.second < optics_.lens().stop() && optics_.lens().stop() < pair.first)
         for (const int crossing : {1, 2})
-            best = std::min(best, region_at(pair, crossing), is_after);
+            best = std::min(best, region_at(pair, cell, crossing), is_after);
     return best;
 }
 
-// Twice: at first all rays of the last surface tell, then those close to what was found.
-GhostRegion GhostPupils::region_at(GhostPair pair, int crossing) const {
+// At first rays through all of the last surface tell, then those close to what was found.
+GhostRegion GhostPupils::region_at(GhostPair pair, int cell, int crossing) const {
     const auto rear_mm = float(optics_.rear_mm());
     GhostRegion whole{};
     whole.half = V2f(rear_mm);
     GhostRegion found = whole;
-    for (int i = 0; i < 3; ++i) {
-        const std::vector<GhostRecord> records = crossings(pair, crossing, found);
+    for (int i = 0; i < kSteps; ++i) {
+        const std::vector<GhostRecord> records = crossings(pair, cell, crossing, found);
         if (records.size() < 2 * kLeastRecords) break;
         found = straight_region(records).region;
     }
     return found.area_mm2() < whole.area_mm2() ? found : whole;
 }
 
-std::vector<GhostRecord> GhostPupils::crossings(GhostPair pair, int crossing,
+std::vector<GhostRecord> GhostPupils::crossings(GhostPair pair, int cell, int crossing,
                                                 const GhostRegion& from) const {
     const LensCamera& camera = optics_.camera();
     const Lens& lens = optics_.lens();
     const double radius_mm = double(camera.input().iris.bounding_radius_mm());
     const double to_film_mm = camera.input().film_mm - lens.vertex_mm(lens.last());
-    std::vector<GhostRecord> all, near;
-    for (uint32_t batch = 0; batch < kBatches; ++batch) {
+    std::vector<GhostRecord> all;
+    for (uint32_t batch = 0; batch < kPupilBatches; ++batch) {
         std::array<GhostRecord, 8> records{};
         LensRay<f8> ray;
         ray.counted_from = lens.last();
         for (int i = 0; i < 8; ++i) {
             const Sampler sampler(SamplerKind::Owen, 2, {0, 0, 8 * batch + uint32_t(i)});
             GhostRecord& r = records[size_t(i)];
-            const V2f film_mm = camera.film_mm(sampler.get2(Dim::Film));
-            r.film_mm = V2d(film_mm);
+            const V2f film = film_mm(cell, sampler.get2(Dim::Film));
+            r.film_mm = V2d(film);
             // Twice as wide, so that straight lines have something to hold on to.
-            r.rear_mm = V2d(from.at(film_mm, 0, sampler.get2(Dim::Lens), 2));
+            r.rear_mm = V2d(from.at(film, 0, sampler.get2(Dim::Lens), 2));
             const double beyond = r.rear_mm.length() / optics_.rear_mm();
             if (beyond > 1) r.rear_mm /= beyond;
             const auto face = face_point(lens, lens.last(), r.rear_mm);
@@ -104,15 +124,17 @@ std::vector<GhostRecord> GhostPupils::crossings(GhostPair pair, int crossing,
             trace_ghost<f8>(lens, pair, Towards::Scene, Clip::No, line_d_, ray, observe));
         for (int i = 0; i < 8; ++i) {
             const GhostRecord& r = records[size_t(i)];
-            if (!there[i] || !is_finite(r.in_disc)) continue;
-            all.push_back(r);
-            if (r.in_disc.length() < kBeside) near.push_back(r);
+            if (there[i] && is_finite(r.in_disc)) all.push_back(r);
         }
     }
-    return near.size() >= 2 * kLeastRecords ? near : all;
+    const auto from_middle = [](const GhostRecord& r) { return r.in_disc.length(); };
+    std::ranges::stable_sort(all, {}, from_middle);
+    const auto near = std::ranges::lower_bound(all, kBeside, {}, from_middle) - all.begin();
+    all.resize(std::min(all.size(), std::max(size_t(near), kNearest)));
+    return all;
 }
 
-float GhostPupils::light_of(uint32_t pair, const GhostRegion& region) const {
+float GhostPupils::light_of(uint32_t pair) const {
     const f4 line_d = splat(float(kLineD_nm));
     const LensIndices<f4> indices = optics_.lens().exact_indices(line_d);
     const auto rear_mm = float(optics_.rear_mm());
@@ -120,11 +142,12 @@ float GhostPupils::light_of(uint32_t pair, const GhostRegion& region) const {
     for (uint32_t n = 0; n < kRays; ++n) {
         const Sampler sampler(SamplerKind::Owen, 0, {int(pair), 0, n});
         const V2f film_mm = optics_.camera().film_mm(sampler.get2(Dim::Film));
-        const V2f rear = region.at(film_mm, 0, sampler.get2(Dim::Lens));
+        const GhostRegion& from = region(pair, film_mm);
+        const V2f rear = from.at(film_mm, 0, sampler.get2(Dim::Lens));
         if (!(rear.length() <= rear_mm)) continue;
         if (const auto found =
                 optics_.ray(optics_.pairs()[pair], film_mm, rear, indices, line_d, m4{-1, 0, 0, 0}))
-            sum += found->share[0] * found->sr_per_mm2 * region.area_mm2();
+            sum += found->share[0] * found->sr_per_mm2 * from.area_mm2();
     }
     return sum;
 }
@@ -135,13 +158,13 @@ GhostDraw GhostPupils::draw(V2f film_mm, float pick, V2f u) const {
     const auto number = static_cast<uint32_t>(pair);
     if (u.x < kWhole)
         return {number, uniform_disk({u.x / kWhole, u.y}) * static_cast<float>(optics_.rear_mm())};
-    return {number, regions_[pair].at(film_mm, 0, {(u.x - kWhole) / (1 - kWhole), u.y})};
+    return {number, region(number, film_mm).at(film_mm, 0, {(u.x - kWhole) / (1 - kWhole), u.y})};
 }
 
 float GhostPupils::density(V2f film_mm, const GhostDraw& drawn) const {
-    const GhostRegion& region = regions_[drawn.pair];
+    const GhostRegion& from = region(drawn.pair, film_mm);
     const float within =
-        region.contains(film_mm, 0, drawn.rear_mm) ? (1 - kWhole) / region.area_mm2() : 0.f;
+        from.contains(film_mm, 0, drawn.rear_mm) ? (1 - kWhole) / from.area_mm2() : 0.f;
     return chances_[drawn.pair] * (kWhole / optics_.rear_mm2() + within);
 }
 

@@ -28,15 +28,21 @@ class GhostPupils {
     [[nodiscard]] float density(V2f film_mm, const GhostDraw&) const;
 
   private:
-    [[nodiscard]] GhostRegion region_of(GhostPair) const;
-    [[nodiscard]] GhostRegion region_at(GhostPair, int crossing) const;
-    [[nodiscard]] std::vector<GhostRecord> crossings(GhostPair, int crossing,
+    /// Cells of the film each way, in which straight lines hold better than over the whole.
+    static constexpr int kAcross = 4, kDown = 3, kCells = kAcross * kDown;
+    [[nodiscard]] static int cell_of(V2f film);
+    /// Film point of a cell; u in [0, 1)^2.
+    [[nodiscard]] V2f film_mm(int cell, V2f u) const;
+    [[nodiscard]] GhostRegion region_of(GhostPair, int cell) const;
+    [[nodiscard]] GhostRegion region_at(GhostPair, int cell, int crossing) const;
+    [[nodiscard]] std::vector<GhostRecord> crossings(GhostPair, int cell, int crossing,
                                                      const GhostRegion&) const;
-    [[nodiscard]] float light_of(uint32_t pair, const GhostRegion&) const;
+    [[nodiscard]] float light_of(uint32_t pair) const;
+    [[nodiscard]] const GhostRegion& region(uint32_t pair, V2f film_mm) const;
 
     const GhostOptics& optics_;
     LensIndices<f8> line_d_;
-    std::vector<GhostRegion> regions_;
+    std::vector<GhostRegion> regions_;    ///< cell by cell for each pair
     std::vector<float> chances_, up_to_;  ///< of each pair; and the sum of those up to it
 };
 

@@ -2,6 +2,7 @@
 #include "camera/ghosts/ghost_regions.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "camera/ghosts/ghost_search.h"
 
@@ -10,7 +11,9 @@ namespace {
 
 constexpr size_t kMostLamps = 8;
 /// Of the brightest lamp's light, below which a lamp is left to rays over all of the last surface.
-constexpr double kDarkest = 1e-3;
+constexpr double kDarkest = 1e-4;
+/// Parts of the first surface that are looked at for all lamps and pairs: some seconds.
+constexpr int kMostParts = 200'000;
 /// Cells across the longer side of the film.
 constexpr int kCells = 64;
 constexpr size_t kMostInCell = 2048;
@@ -51,9 +54,14 @@ GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeatu
     });
     if (lamps.empty()) return;
     const GhostSearch search(optics);
+    // The pairs that reflect most come first, as the search must end.
+    std::vector<uint32_t> pairs(optics.pairs().size());
+    std::iota(pairs.begin(), pairs.end(), 0u);
+    std::ranges::stable_sort(pairs, std::greater(),
+                             [&](uint32_t k) { return optics.reflects(optics.pairs()[k]); });
+    int parts_left = kMostParts;
     for (const GhostLamp& lamp : lamps)
-        for (uint32_t pair = 0; pair < optics.pairs().size(); ++pair)
-            search.find(pair, lamp, regions_);
+        for (const uint32_t pair : pairs) search.find(pair, lamp, parts_left, regions_);
     std::erase_if(regions_, [&](const GhostRegion& r) {
         return !(r.light > 0) || r.area_mm2() > kWidest * optics.rear_mm2();
     });

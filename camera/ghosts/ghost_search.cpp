@@ -21,6 +21,9 @@ constexpr uint32_t kBatches = 4, kFirstBatches = 32;
 /// pass all rims.
 constexpr int kDivisions = 6, kLastDivisions = 1, kDivisionsByRims = 2;
 constexpr double kBad = 0.02;
+/// After some divisions more come only where the last made a region so many times as good.
+constexpr double kHelps = 1;
+constexpr int kTried = 3;
 
 /// Square of the first surface, across the axis.
 struct Part {
@@ -132,14 +135,19 @@ class PairSearch {
   public:
     /// unit: light on the film for each mm^2 of light that enters.
     PairSearch(const GhostOptics& optics, const LampRays& rays, uint32_t pair, double unit,
-               std::vector<GhostRegion>& out)
-        : rays_(rays), pair_(pair), unit_(unit), out_(out) {
+               int& parts_left, std::vector<GhostRegion>& out)
+        : rays_(rays), pair_(pair), unit_(unit), out_(out), left_(parts_left) {
         const V2f corner = optics.camera().film_mm(V2f(0.f));
         film_ = {std::fabs(corner.x), std::fabs(corner.y)};
     }
-    /// Finds those of count x count parts of a square, each by itself, divisions times finer where
-    /// that helps. batches: of rays that tell whether light passes a part.
-    void find(const Part& whole, int count, int divisions, uint32_t batches) const;
+    /// How a square is searched: in count x count parts, each divided so many times at most.
+    struct Level {
+        int count, divisions;
+        uint32_t batches;  ///< of rays that tell whether light passes a part
+        double saw = 0;    ///< share of the points that saw the lamp, of the region of the square
+    };
+    /// Finds the regions of a square.
+    void find(const Part& whole, const Level&);
 
   private:
     [[nodiscard]] bool meets_film(const GhostRegion& r) const {
@@ -152,12 +160,14 @@ class PairSearch {
     double unit_;
     std::vector<GhostRegion>& out_;
     V2f film_;
+    int& left_;
 };
 
-void PairSearch::find(const Part& whole, int count, int divisions, uint32_t batches) const {
+void PairSearch::find(const Part& whole, const Level& level) {
+    const auto [count, divisions, batches, saw] = level;
     const double side = whole.side_mm / count;
-    const auto part_of = [&](int k) {
-        return Part{whole.corner_mm + V2d(k % count, k / count) * side, side};
+    const auto part_of = [&, n = count](int k) {
+        return Part{whole.corner_mm + V2d(k % n, k / n) * side, side};
     };
     std::vector<double> light_mm2, lit;
     for (int k = 0; k < count * count; ++k) {
@@ -167,27 +177,29 @@ void PairSearch::find(const Part& whole, int count, int divisions, uint32_t batc
             lit.back() += r.light_mm2 > 0;
         }
     }
-    const auto light_near = [&](int k) {
+    const auto light_near = [&, n = count](int k) {
         double near = 0;
-        for (int j = std::max(k / count - 1, 0); j <= std::min(k / count + 1, count - 1); ++j)
-            for (int i = std::max(k % count - 1, 0); i <= std::min(k % count + 1, count - 1); ++i)
-                near = std::max(near, light_mm2[size_t(j * count + i)]);
+        for (int j = std::max(k / n - 1, 0); j <= std::min(k / n + 1, n - 1); ++j)
+            for (int i = std::max(k % n - 1, 0); i <= std::min(k % n + 1, n - 1); ++i)
+                near = std::max(near, light_mm2[size_t(j * n + i)]);
         return near;
     };
     for (int k = 0; k < count * count; ++k) {
+        --left_;
         const double near = light_near(k), light = light_mm2[size_t(k)];
         if (!(near > 0)) continue;
         const std::vector<GhostRecord> records = rays_.through(part_of(k), kBatches, Clip::No);
         const bool tells = records.size() >= kLeastRecords;
         auto [region, sees, open] = tells ? straight_region(records) : StraightRegion{};
         const bool by_rims = open < kSeesEnough && divisions > kDivisions - kDivisionsByRims;
-        if (divisions > 0 && light > 0 &&
-            (sees < (divisions > kLastDivisions ? kSeesEnough : kBad) || by_rims)) {
+        const bool is_bad = sees < (divisions > kLastDivisions ? kSeesEnough : kBad);
+        if (divisions > 0 && light > 0 && left_ > 0 &&
+            ((is_bad && (divisions > kDivisions - kTried || sees > kHelps * saw)) || by_rims)) {
             const size_t before = out_.size();
             // As many rays as it takes to meet the light again.
             const double rays = 8 * batches / lit[size_t(k)];
-            find(part_of(k), 2, divisions - 1,
-                 std::clamp(uint32_t(rays / 4), kBatches, kFirstBatches));
+            find(part_of(k),
+                 {2, divisions - 1, std::clamp(uint32_t(rays / 4), kBatches, kFirstBatches), sees});
             if (out_.size() > before) continue;  // else its rays slip through between others
         }
         if (!tells || !meets_film(region)) continue;
@@ -220,11 +232,12 @@ GhostSearch::GhostSearch(const GhostOptics& optics) : optics_(optics), draws_(kF
     }
 }
 
-void GhostSearch::find(uint32_t pair, const GhostLamp& lamp, std::vector<GhostRegion>& out) const {
+void GhostSearch::find(uint32_t pair, const GhostLamp& lamp, int& parts_left,
+                       std::vector<GhostRegion>& out) const {
     const LampRays rays(optics_, draws_, pair, lamp);
     const double unit = lamp.nits_sr * double(optics_.reflects(optics_.pairs()[pair]));
-    PairSearch(optics_, rays, pair, unit, out)
-        .find(rays.whole(), kParts, kDivisions, kFirstBatches);
+    PairSearch(optics_, rays, pair, unit, parts_left, out)
+        .find(rays.whole(), {kParts, kDivisions, kFirstBatches});
 }
 
 }  // namespace petzval

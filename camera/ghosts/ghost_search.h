@@ -31,8 +31,9 @@ class GhostSearch {
     explicit GhostSearch(const GhostOptics&);
 
     /// Appends the regions of a lamp's ghosts by one pair: one for each part of the first surface
-    /// whose light reaches the film, and a few beside them.
-    void find(uint32_t pair, const GhostLamp&, std::vector<GhostRegion>&) const;
+    /// whose light reaches the film, and a few beside them. parts_left: parts that may be looked at
+    /// yet; after them none is divided.
+    void find(uint32_t pair, const GhostLamp&, int& parts_left, std::vector<GhostRegion>&) const;
 
   private:
     const GhostOptics& optics_;

@@ -54,13 +54,6 @@ LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
     return out;
 }
 
-// One lane of a ray.
-template <class V>
-SceneRay<ScalarOf<V>> lane_of(const LensRay<V>& ray, int i) {
-    const auto at = [i](const Vec3<V>& a) { return Vec3<ScalarOf<V>>{a.x[i], a.y[i], a.z[i]}; };
-    return {at(ray.origin), at(ray.direction), ray.counted_from};
-}
-
 }  // namespace
 
 f4 LensCamera::Place::coating_nm() const {
@@ -94,10 +87,7 @@ Ray LensCamera::in_world(const SceneRay<S>& ray) const {
     out.direction = unit(pose_.to_world(direction));
     return out;
 }
-
-Ray LensCamera::in_world(const LensRay<f4>& ray, int lane) const {
-    return in_world(lane_of(ray, lane));
-}
+template Ray LensCamera::in_world(const SceneRay<float>&) const;
 
 // The image stands on its head.
 FilmLanding LensCamera::in_pixels(const LensLanding& at, V2f frame_px) const {

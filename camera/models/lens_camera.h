@@ -76,8 +76,9 @@ class LensCamera final : public Camera {
     [[nodiscard]] const Pose& pose() const { return pose_; }
     /// Factor of the weights for the exposure.
     [[nodiscard]] float gain() const { return gain_; }
-    /// One lane of a ray in front of the lens, in the world.
-    [[nodiscard]] Ray in_world(const LensRay<f4>&, int lane) const;
+    /// Ray in front of the lens, in the world. S: float or double.
+    template <class S>
+    [[nodiscard]] Ray in_world(const SceneRay<S>&) const;
 
     /// Scales the weights from here on: they average to the exposure in the middle of the film,
     /// where they averaged to its irradiance(). axial: that irradiance, before the first call.
@@ -117,8 +118,6 @@ class LensCamera final : public Camera {
     /// Distance of the ray's origin behind the middle of the entrance pupil.
     template <class S>
     [[nodiscard]] S behind_pupil_mm(const SceneRay<S>&) const;
-    template <class S>
-    [[nodiscard]] Ray in_world(const SceneRay<S>&) const;
     [[nodiscard]] FilmLanding in_pixels(const LensLanding&, V2f frame_px) const;
     [[nodiscard]] LensIndices<f8> indices_of(const LeadPoints&, bool achromatic) const;
     void land(size_t count, std::span<const Bands>, const LeadPoints&, const LeadRays&,

@@ -49,6 +49,12 @@ struct SceneRay {
     Vec3<S> origin, direction;
     int counted_from = 0;
 };
+/// One lane of a ray.
+template <class V>
+[[nodiscard]] SceneRay<ScalarOf<V>> lane_of(const LensRay<V>& ray, int i) {
+    const auto at = [i](const Vec3<V>& a) { return Vec3<ScalarOf<V>>{a.x[i], a.y[i], a.z[i]}; };
+    return {at(ray.origin), at(ray.direction), ray.counted_from};
+}
 
 /// Ray of the scene that was drawn for one lane of a film point.
 template <class S>

@@ -86,12 +86,25 @@ std::vector<double> radii_of_shares_mm(std::span<const PointSpread> spreads,
                 {std::hypot(spreads[i].offset_mm(cell % n), spreads[i].offset_mm(cell / n)),
                  weights[i] * spreads[i].share[cell]});
     }
-    std::sort(rings.begin(), rings.end());
+    // A cell's light lies evenly between half a step before its middle and as much beyond.
+    double step = 0;
+    for (const PointSpread& spread : spreads) step = std::max(step, spread.step_mm);
+    const auto within = [&](double radius_mm) {
+        double sum = 0;
+        for (const auto& [middle_mm, share] : rings)
+            sum += share * std::clamp((radius_mm - middle_mm) / step + 0.5, 0., 1.);
+        return sum;
+    };
     std::vector<double> out;
-    double sum = 0;
-    for (size_t i = 0; i < rings.size() && out.size() < shares.size(); ++i)
-        if ((sum += rings[i][1]) >= shares[out.size()]) out.push_back(rings[i][0]);
-    out.resize(shares.size(), rings.back()[0]);
+    for (const double share : shares) {
+        double low = 0, high = 0;
+        for (const auto& ring : rings) high = std::max(high, ring[0] + step);
+        for (int i = 0; i < 24; ++i) {
+            const double middle = (low + high) / 2;
+            (within(middle) < share ? low : high) = middle;
+        }
+        out.push_back((low + high) / 2);
+    }
     return out;
 }
 

@@ -76,7 +76,7 @@ std::optional<PupilGrid> pupil_grid(const AimedBundle& bundle, const ReferenceSp
     // used: of the slope at which neighbours differ by half a wavelength. beyond: rays that only
     // just do not pass, by about a cell of the lattice.
     constexpr int lattice = 48;
-    constexpr double used = 0.9, margin = 0.03, beyond = 0.1, parallel = 1e-9;
+    constexpr double used = 0.9, margin = 0.08, beyond = 0.1, parallel = 1e-9;
     std::array<double, 2> least{INFINITY, INFINITY}, most{-INFINITY, -INFINITY};
     double reach_mm = 0;
     const auto points = bundle.grid(lattice);

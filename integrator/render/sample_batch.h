@@ -18,11 +18,13 @@ namespace petzval {
     return hash32(seed, replicate + 1);
 }
 
-/// Factor that makes no number of a colour larger than a limit in magnitude, 1 where none is. Of an
-/// infinite colour NaN comes, which the film counts.
-[[nodiscard]] inline float clamping_share(const Rgb& colour, float limit) {
-    const float largest = std::max({std::abs(colour[0]), std::abs(colour[1]), std::abs(colour[2])});
-    return largest > limit ? limit / largest : 1.f;
+/// Light of which no number of R, G and B is larger than a limit in magnitude, in the same colour.
+/// Of infinite light NaN comes, which the film counts.
+[[nodiscard]] inline f4 clamped(f4 light, const Bands& bands, std::optional<float> limit_nits) {
+    if (!limit_nits) return light;
+    const Rgb c = to_rgb(light, bands);
+    const float largest = std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2])});
+    return largest > *limit_nits ? light * splat(*limit_nits / largest) : light;
 }
 
 /// Samples whose camera rays are found together: what the film gets of each is a pure function of
@@ -70,9 +72,7 @@ class SampleBatch {
     }
     void find_camera_rays();
     void trace(size_t i);
-    /// Light of a sample as the film takes it: clamped.
-    [[nodiscard]] f4 kept(f4 light, const Bands&) const;
-    void add_to_film(size_t i, FilmSample&, f4 light, f4 ghosts);
+    void add_to_film(size_t i, FilmSample&, const std::array<f4, 2>& light);
     /// Light that one of the camera's rays brings to a sample.
     [[nodiscard]] f4 light_along(const CameraPath& path, size_t i, const PathStart& start,
                                  FilmSample& out) {
@@ -122,8 +122,8 @@ void SampleBatch<Tracer>::trace(size_t i) {
     const uint64_t vertices_before = stats_.vertices;
     stats_.lens_lanes += rays.lanes;
     FilmSample sample;
-    f4 light{}, ghosts{};
-    float behind = 0.f;  // weight of the rays that left the scene, over all lanes
+    std::array<f4, 2> light{};  // in order, and of ghosts
+    float behind = 0.f;         // weight of the rays that left the scene, over all lanes
     bool layers = has_layers_, guide = has_guide_;  // are still to be filled in
     for (const CameraPath& path : rays) {
         FilmSample other;
@@ -132,11 +132,10 @@ void SampleBatch<Tracer>::trace(size_t i) {
         // What surfaces reflect of a target is found by other rays as well: it is worth the effort
         // by the weight.
         const float effort = path.to_target ? path.mis_weight : 1.f;
-        (path.of_ghost ? ghosts : light) +=
-            light_along(path, i,
-                        {path.ray, path.lanes, path.hero_decided, effort, layers && !path.to_target,
-                         guide && !path.to_target},
-                        of_path);
+        light[path.of_ghost] += light_along(path, i,
+                                            {path.ray, path.lanes, path.hero_decided, effort,
+                                             layers && !path.to_target, guide && !path.to_target},
+                                            of_path);
         if (path.to_target) {
             ++stats_.target_rays;
             continue;
@@ -149,30 +148,28 @@ void SampleBatch<Tracer>::trace(size_t i) {
     sample.alpha = 1.f - behind / (rays.exposure * static_cast<float>(lane_count(bands_[i].on)));
     sample.aov[static_cast<size_t>(Aov::Cost)] =
         V3f(static_cast<float>(stats_.vertices - vertices_before), 0, 0);
-    add_to_film(i, sample, kept(light, bands_[i]), kept(ghosts, bands_[i]));
-}
-
-template <class Tracer>
-f4 SampleBatch<Tracer>::kept(f4 light, const Bands& bands) const {
-    if (!job_.clamp_nits) return light;
-    return light * splat(clamping_share(to_rgb(light, bands), *job_.clamp_nits));
+    add_to_film(i, sample, light);
 }
 
 // Ghosts are clamped by themselves and added last, so that the rest is that of a picture without.
 template <class Tracer>
-void SampleBatch<Tracer>::add_to_film(size_t i, FilmSample& sample, f4 light, f4 ghosts) {
+void SampleBatch<Tracer>::add_to_film(size_t i, FilmSample& sample,
+                                      const std::array<f4, 2>& light) {
     const SampleId id = ids_[i];
     const Bands& bands = bands_[i];
+    const f4 order = clamped(light[0], bands, job_.clamp_nits),
+             ghosts = clamped(light[1], bands, job_.clamp_nits);
     const Rgb of_ghosts = to_rgb(ghosts, bands);
-    sample.colour = to_rgb(light, bands) + of_ghosts;
-    light += ghosts;
-    sample.aov[static_cast<size_t>(Aov::Ghosts)] = V3f(of_ghosts[0], of_ghosts[1], of_ghosts[2]);
+    sample.colour = to_rgb(order, bands) + of_ghosts;
+    sample.aov[static_cast<size_t>(Aov::Ghosts)] = {of_ghosts[0], of_ghosts[1], of_ghosts[2]};
     if (job_.velocity && sample.hit)
         sample.aov[static_cast<size_t>(Aov::Velocity)] =
             job_.velocity->at(sample.first, points_[i].film * V2f(frame_px_));
     if (film_->spectral())
         film_->add(id.x, id.y, id.index, sample,
-                   {id.index % job_.replicates, light, job_.observer.to_xyz(light, bands)}, bands);
+                   {id.index % job_.replicates, order + ghosts,
+                    job_.observer.to_xyz(order + ghosts, bands)},
+                   bands);
     else
         film_->add(id.x, id.y, id.index, sample);
 }

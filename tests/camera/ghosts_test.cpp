@@ -114,7 +114,7 @@ PairLight drawn(const GhostOptics& optics, const SmallFeature& sun, uint32_t cou
         if (!at || at->rear_mm.length() > float(optics.rear_mm())) continue;
         const GhostPair pair = optics.pairs()[at->pair];
         const auto found = optics.ray(pair, film, at->rear_mm, indices, nm, m4{-1, 0, 0, 0});
-        if (!found || !hits(camera.in_world(found->ray, 0), sun)) continue;
+        if (!found || !hits(camera.in_world(lane_of(found->ray, 0)), sun)) continue;
         out[{pair.first, pair.second}].add(double(found->share[0] * found->sr_per_mm2) /
                                            double(regions.density(film, 0, *at)) * film_mm2);
     }

@@ -99,8 +99,9 @@ Draws draw(const Subject& of, uint32_t count, Pairs& pairs) {
         if (!at || at->rear_mm.length() > float(optics.rear_mm())) continue;
         const GhostPair pair = optics.pairs()[at->pair];
         const auto found = optics.ray(pair, film, at->rear_mm, indices, nm, m4{-1, 0, 0, 0});
-        if (!found || double(of.camera->in_world(found->ray, 0).direction.dot(of.sun.centre)) <
-                          std::cos(double(of.sun.reach_m)))
+        if (!found ||
+            double(of.camera->in_world(lane_of(found->ray, 0)).direction.dot(of.sun.centre)) <
+                std::cos(double(of.sun.reach_m)))
             continue;
         const double light = double(found->share[0] * found->sr_per_mm2),
                      density = double(regions.density(film, 0, *at)), value = light / density,

@@ -22,6 +22,8 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
                        TbbExecutor& executor) {
     ModeChoice out{0, {}, resolved_request(first)};
     out.scene.spectral.mode = SpectralMode::Wavelengths;
+    // Ghosts take part in each way alike, and would be searched for each.
+    const GhostUse ghosts = std::exchange(out.scene.camera.ghosts, GhostUse::Off);
     const auto with = [&](DispersionMode mode) {
         out.scene.camera.dispersion = mode;
         return view_of(first, out.scene, executor);
@@ -54,6 +56,7 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
         *split->setup().view.still, *shared.view.still, split->setup().view.observer,
         split->setup().from.camera.focus_plane(), request.scene.size);
     out.scene.camera.dispersion = out.mode();
+    out.scene.camera.ghosts = ghosts;
     return out;
 }
 

@@ -13,12 +13,15 @@ constexpr size_t kMostLamps = 8;
 /// Of the brightest lamp's light, below which a lamp is left to rays over all of the last surface.
 constexpr double kDarkest = 1e-4;
 /// Parts of the first surface that are looked at for all lamps and pairs: some seconds.
-constexpr int kMostParts = 200'000;
+constexpr int kMostParts = 60'000;
 /// Cells across the longer side of the film.
 constexpr int kCells = 64;
 constexpr size_t kMostInCell = 2048;
 /// Of the last surface's area, from which on a region is no better than the surface.
 constexpr float kWidest = 0.25f;
+/// Share of the choice among pairs, and among regions of a pair, that is the same for all: their
+/// light is known by few rays.
+constexpr float kEvenly = 0.1f;
 /// Share of the draws that goes to a rectangle so many times as long and as wide: what a region
 /// misses lies close beside it.
 constexpr float kWideShare = 0.1f, kWider = 8;
@@ -103,6 +106,7 @@ void GhostRegions::list_regions() {
             lists[cell].push_back({k, regions_[k].light * share});
         });
     const auto pair_of = [&](const Member& m) { return regions_[m.region].pair; };
+    const auto first_group = [&] { return groups_.begin() + cells_begin_.back(); };
     cells_begin_.push_back(0);
     for (std::vector<Member>& list : lists) {
         std::ranges::stable_sort(list, std::greater(), &Member::light);
@@ -119,6 +123,10 @@ void GhostRegions::list_regions() {
             groups_.back().end = at + 1;
             groups_.back().up_to = all > 0 ? sum / all : 1;
         }
+        const auto count = float(groups_.end() - first_group());
+        float number = 0;
+        for (auto group = first_group(); group != groups_.end(); ++group)
+            group->up_to = (1 - kEvenly) * group->up_to + kEvenly * (++number / count);
         cells_begin_.push_back(uint32_t(groups_.size()));
     }
 }
@@ -133,11 +141,16 @@ auto GhostRegions::groups_at(V2f film_mm) const -> std::span<const Group> {
     return std::span(groups_).subspan(cells_begin_[at], cells_begin_[at + 1] - cells_begin_[at]);
 }
 
-float GhostRegions::light_of(const Group& group, V2f film_mm) const {
-    float sum = 0;
+auto GhostRegions::serving(const Group& group, V2f film_mm) const -> Serving {
+    Serving out;
     for (uint32_t i = group.first; i < group.end; ++i)
-        if (const GhostRegion& r = regions_[members_[i]]; r.serves(film_mm)) sum += r.light;
-    return sum;
+        if (const GhostRegion& r = regions_[members_[i]]; r.serves(film_mm))
+            out.light += r.light, ++out.count;
+    return out;
+}
+
+float GhostRegions::Serving::chance(const GhostRegion& r) const {
+    return (1 - kEvenly) * r.light / light + kEvenly / count;
 }
 
 auto GhostRegions::draw(V2f film_mm, float wave, float pick, V2f u) const
@@ -147,14 +160,16 @@ auto GhostRegions::draw(V2f film_mm, float wave, float pick, V2f u) const
     auto group = std::ranges::upper_bound(groups, pick, {}, &Group::up_to);
     if (group == groups.end()) --group;
     const float before = group == groups.begin() ? 0 : (group - 1)->up_to;
-    float left = (pick - before) / (group->up_to - before) * light_of(*group, film_mm);
+    float left = (pick - before) / (group->up_to - before);
+    const Serving all = serving(*group, film_mm);
     const GhostRegion* chosen = nullptr;
     for (uint32_t i = group->first; i < group->end; ++i) {
         const GhostRegion& r = regions_[members_[i]];
         if (!r.serves(film_mm)) continue;
         chosen = &r;
-        if (left < r.light) break;
-        left -= r.light;
+        const float chance = all.chance(r);
+        if (left < chance) break;
+        left -= chance;
     }
     if (!chosen) return {};
     const bool wide = u.x < kWideShare;
@@ -166,18 +181,18 @@ float GhostRegions::density(V2f film_mm, float wave, const GhostDraw& drawn) con
     const auto groups = groups_at(film_mm);
     const auto group = std::ranges::lower_bound(groups, drawn.pair, {}, &Group::pair);
     if (group == groups.end() || group->pair != drawn.pair) return 0;
-    float all = 0, sum = 0;
+    const Serving all = serving(*group, film_mm);
+    float sum = 0;
     for (uint32_t i = group->first; i < group->end; ++i) {
         const GhostRegion& r = regions_[members_[i]];
         if (!r.serves(film_mm)) continue;
-        all += r.light;
         if (!r.contains(film_mm, wave, drawn.rear_mm, kWider)) continue;
         const bool within = r.contains(film_mm, wave, drawn.rear_mm);
-        sum += r.light / r.area_mm2() *
+        sum += all.chance(r) / r.area_mm2() *
                (kWideShare / (kWider * kWider) + (within ? 1 - kWideShare : 0.f));
     }
     const float before = group == groups.begin() ? 0 : (group - 1)->up_to;
-    return sum > 0 ? sum / all * (group->up_to - before) : 0.f;
+    return sum * (group->up_to - before);
 }
 
 }  // namespace petzval

@@ -38,8 +38,12 @@ class GhostRegions {
     };
     void list_regions();
     [[nodiscard]] std::span<const Group> groups_at(V2f film_mm) const;
-    /// Light of the regions of a group that serve a film point.
-    [[nodiscard]] float light_of(const Group&, V2f film_mm) const;
+    /// Regions of a group that serve a film point: their light, and the chance of each.
+    struct Serving {
+        float light = 0, count = 0;
+        [[nodiscard]] float chance(const GhostRegion&) const;
+    };
+    [[nodiscard]] Serving serving(const Group&, V2f film_mm) const;
     /// Calls f with each cell that a region serves, and the share of the cell.
     template <class F>
     void each_cell(const GhostRegion&, const F&) const;

@@ -35,8 +35,7 @@ ScalarOf<V> sum(V a) {
     return (a[0] + a[1]) + (a[2] + a[3]);
 }
 
-// Loss reason per lane that is on and did not pass. A ray that a rim clips first counts as
-// vignetted, whatever happens after.
+// Losses of the lanes that are on. A ray that a rim clips first counts as vignetted.
 template <class V>
 LensLosses<uint32_t> losses(m4 on, const LensDraw<V>& drawn, MaskOf<V> clear) {
     const auto count = [on](MaskOf<V> lanes) {

@@ -51,6 +51,21 @@ picture() {
     jpeg "$1" "$out/$1.png"
 }
 
+# The sun in four lenses, bare and coated.
+suns=()
+if is_wanted suns; then
+    for coating in uncoated broadband; do
+        ev=-11.2
+        [[ $coating == broadband ]] || ev=-12.7
+        for lens in takumar-50mm-f1.2 canon-14mm-f2.8-asph petzval-portrait-100mm-f3.6 noct-nikkor-58mm-f0.95; do
+            render "sun_${lens}_$coating" 300x200 $scenes/low_sun.glb --background 900,1100,1500 --lens $lens --fstop 8 \
+                --aperture polygon:8 --focus 9m --method coating=$coating --exposure $ev
+            suns+=("$out/sun_${lens}_$coating.png")
+        done
+    done
+    jpeg suns "${suns[@]}" --mosaic:pad=4 4x2
+fi
+
 # What is sharp, and how deep: ornaments at 1 m and 2 m through a thin lens that is 2 cm or 10 cm
 # wide. Names say radii of 0.1 and 0.5, as in the units of another scene; these keep their ratio of
 # five.

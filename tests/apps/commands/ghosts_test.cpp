@@ -103,7 +103,8 @@ TEST_F(CliGhosts, SayWhereThereAreNone) {
     std::ofstream(path("bare.json"))
         << R"({"surfaces": [{"radius": 50, "thickness": 5, "semi_diameter": 8,
             "medium": {"n": 1.5}}, {"radius": -50, "thickness": 48, "semi_diameter": 8, "stop": true, "medium": null}]})";
-    expect({"--lens", path("bare.json"), "--method", "coating=year"}, "states no year");
+    expect({"--lens", path("bare.json"), "--focus", "1m", "--method", "coating=year"},
+           "states no year");
 }
 
 }  // namespace

@@ -111,7 +111,10 @@ void print_sample(const SampleRecord& sample, const Scene& scene, SampleId id) {
         using namespace fmt::literals;
         print_line(fmt::format(
             fmt::runtime(kSteps[static_cast<size_t>(event.step)]), "path"_a = path,
-            "kind"_a = path > 0 && sample.rays[path - 1].to_target ? "to a target" : "camera ray",
+            "kind"_a = path == 0                         ? "camera ray"
+                       : sample.rays[path - 1].of_ghost  ? "of a ghost"
+                       : sample.rays[path - 1].to_target ? "to a target"
+                                                         : "camera ray",
             "place"_a = place(s ? s->p : event.ray.origin),
             "direction"_a = place(event.ray.direction),
             "lanes"_a = lanes(event.step == PathStep::GoesOn ? event.drawn.weight : event.lanes),

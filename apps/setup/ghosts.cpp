@@ -2,7 +2,6 @@
 #include "apps/setup/ghosts.h"
 
 #include "camera/ghosts/ghost_camera.h"
-#include "core/light/small_features.h"
 #include "io/base/error.h"
 
 namespace petzval {
@@ -52,10 +51,10 @@ std::shared_ptr<const Camera> with_ghosts(const CameraRequest& asked, const View
 }
 
 std::optional<std::string> ghost_remark(const CameraRequest& asked, const View& view,
-                                        const Scene& scene, const Bvh& bvh) {
+                                        std::span<const SmallFeature> things, const Bvh& bvh) {
     const auto lens = traced_lens(view);
     if (!lens || asked.coating != Coating::Ideal || asked.ghosts == GhostUse::Off) return {};
-    for (const SmallFeature& thing : small_features_of(scene))
+    for (const SmallFeature& thing : things)
         if (thing.is_lamp() && shines_in(thing, lens->pose(), bvh))
             return "a lamp shines into the lens, whose surfaces reflect nothing here: ⟨coating⟩ "
                    "year shows its ghosts";

@@ -4,9 +4,11 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "apps/setup/render_setup.h"
+#include "core/light/small_features.h"
 
 namespace petzval {
 
@@ -16,9 +18,9 @@ namespace petzval {
 [[nodiscard]] std::shared_ptr<const Camera> with_ghosts(const CameraRequest&, const View&,
                                                         const Scene&, const Bvh&);
 
-/// Remark that a small lamp shines into a lens whose coating reflects nothing; nothing where none
-/// does.
+/// Remark that one of these lamps shines into a lens whose coating reflects nothing; nothing where
+/// none does.
 [[nodiscard]] std::optional<std::string> ghost_remark(const CameraRequest&, const View&,
-                                                      const Scene&, const Bvh&);
+                                                      std::span<const SmallFeature>, const Bvh&);
 
 }  // namespace petzval

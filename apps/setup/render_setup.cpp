@@ -207,9 +207,9 @@ PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frame
 /// Small bright things to which a camera sends rays, where that pays; nullptr: none.
 std::shared_ptr<const TargetGrid> targets_of(TargetCamera& camera, const Camera& still, V2i size_px,
                                              const PreparedScene& prepared,
+                                             std::vector<SmallFeature> features,
                                              const std::function<void()>& next_step) {
     const Scene& scene = *prepared.scene;
-    std::vector<SmallFeature> features = small_features_of(scene, kMostTargets);
     const std::vector<SmallFeature> images =
         highlights(still, scene, *prepared.bvh, size_px, features);
     features.insert(features.end(), images.begin(), images.end());
@@ -226,10 +226,11 @@ std::shared_ptr<const Camera> moved(std::shared_ptr<const Camera> camera, const 
 }
 
 /// The camera that renders, from the one that stands still: aimed at targets and moved by a
-/// shutter, where there are any.
-void compose_camera(const SceneRequest& asked, const RenderSetup* like,
-                    const PreparedScene& prepared, View& view,
-                    const std::function<void()>& next_step) {
+/// shutter, where there are any. Returns the small features among which targets were looked for.
+std::vector<SmallFeature> compose_camera(const SceneRequest& asked, const RenderSetup* like,
+                                         const PreparedScene& prepared, View& view,
+                                         const std::function<void()>& next_step) {
+    std::vector<SmallFeature> features;
     view.camera = view.still;
     if (asked.targets == TargetUse::Auto)
         if (auto aims = target_camera(view.still)) {
@@ -237,14 +238,17 @@ void compose_camera(const SceneRequest& asked, const RenderSetup* like,
                               like->from.asked.targets == TargetUse::Auto &&
                               like->from.asked.size == asked.size &&
                               has_same_rays(*view.still, *like->view.still);
-            view.targets = same ? like->view.targets
-                                : targets_of(*aims, *view.still, asked.size, prepared, next_step);
+            if (!same) features = small_features_of(*prepared.scene, kMostTargets);
+            view.targets =
+                same ? like->view.targets
+                     : targets_of(*aims, *view.still, asked.size, prepared, features, next_step);
             aims->set_targets(view.targets);
             if (view.targets) view.camera = std::move(aims);
         }
     view.camera = with_ghosts(asked.camera, view, *prepared.scene, *prepared.bvh);
     next_step();
     view.camera = moved(std::move(view.camera), view);
+    return features;
 }
 
 RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseSink& begins,
@@ -306,9 +310,10 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
             *prepared.lights, scene, *prepared.bvh, *moved(setup.view.still, setup.view),
             setup.view.observer, request.size));
     next_step();
-    compose_camera(request, shares ? like : nullptr, prepared, setup.view, next_step);
+    const std::vector<SmallFeature> lamps =
+        compose_camera(request, shares ? like : nullptr, prepared, setup.view, next_step);
     if (!shares)
-        if (const auto remark = ghost_remark(request.camera, setup.view, scene, *prepared.bvh))
+        if (const auto remark = ghost_remark(request.camera, setup.view, lamps, *prepared.bvh))
             notice(*remark);
     from.camera = std::move(camera.report);
     return setup;

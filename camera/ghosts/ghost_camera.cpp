@@ -8,9 +8,6 @@
 namespace petzval {
 namespace {
 
-/// Shares of the samples that get a ray over all pairs, and one through a region: a ghost is darker
-/// than the picture, and changes slowly over it.
-constexpr float kOverAll = 0.125f, kThroughRegion = 0.25f;
 /// What surfaces in front of a lamp reflect is left to the rays over all pairs, mostly.
 constexpr float kEffortBesideLamp = 1.f / 16;
 
@@ -29,8 +26,7 @@ GhostCamera::GhostCamera(std::shared_ptr<const Camera> in_order, GhostOptics opt
                          GhostRegions regions)
     : in_order_(std::move(in_order)),
       optics_(std::move(optics)),
-      pupils_(optics_),
-      regions_(std::move(regions)),
+      draws_(optics_, std::move(regions)),
       line_d_(optics_.lens().exact_indices(splat(float(kLineD_nm)))) {}
 
 void GhostCamera::sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
@@ -55,16 +51,10 @@ void GhostCamera::add_ghosts(const FilmPoint& point, const Bands& bands, CameraS
                 f4{}};
     if (!shared)
         for (int i = 0; i < 4; ++i) place.wave[i] = wave_of(nm[i]);
-    const Sampler& sampler = point.sampler;
-    const float through = sampler.get1(Dim::GhostPick) / kThroughRegion,
-                over_all = sampler.get1(Dim::GhostPick, 1) / kOverAll;
-    if (through < 1)
-        if (const auto drawn = regions_.draw(place.film_mm, place.wave[bands.hero], through,
-                                             sampler.get2(Dim::GhostPoint)))
-            add_rays(place, *drawn, bands.on, kEffortBesideLamp, out);
-    if (over_all < 1)
-        add_rays(place, pupils_.draw(place.film_mm, over_all, sampler.get2(Dim::GhostPoint, 1)),
-                 shared ? bands.on : only_lane(bands.hero), 1, out);
+    const auto [over_all, through_region] =
+        draws_.draw(place.film_mm, place.wave[bands.hero], point.sampler);
+    if (through_region) add_rays(place, *through_region, bands.on, kEffortBesideLamp, out);
+    if (over_all) add_rays(place, *over_all, shared ? bands.on : only_lane(bands.hero), 1, out);
 }
 
 // A point that one lane's wavelength led to may have been drawn for each of them: the lanes take
@@ -77,15 +67,12 @@ void GhostCamera::add_rays(const Place& place, const GhostDraw& drawn, m4 lanes,
                                    place.indices, place.coats_nm, lanes);
     if (!found) return;
     const int on = lane_count(place.bands.on);
-    float through = 0;
-    if (place.shared)
-        through = regions_.density(place.film_mm, 0, drawn);
-    else
-        for (int i = 0; i < 4; ++i)
-            if (place.bands.on[i])
-                through += regions_.density(place.film_mm, place.wave[i], drawn) / float(on);
+    std::array<float, 4> waves{};
+    size_t count = 0;
+    for (int i = 0; i < 4; ++i)
+        if (place.bands.on[i]) waves[count++] = place.wave[i];
     const float density =
-        kOverAll * pupils_.density(place.film_mm, drawn) + kThroughRegion * through;
+        draws_.density(place.film_mm, {waves.data(), place.shared ? 1 : count}, drawn);
     const LensCamera& camera = optics_.camera();
     const float scale = camera.gain() * found->sr_per_mm2 / (density * effort) * float(on) /
                         float(lane_count(lanes));

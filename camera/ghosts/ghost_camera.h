@@ -4,14 +4,13 @@
 
 #include <memory>
 
-#include "camera/ghosts/ghost_regions.h"
+#include "camera/ghosts/ghost_draws.h"
 
 namespace petzval {
 
 /// Rays of another camera and, together with them, rays on which light of two reflections reaches
-/// the same film points: an estimate without a bias. Some are drawn over all pairs and all of the
-/// last surface, some where lamps are known to shine through; both are weighed by the sum of their
-/// densities (balance heuristic, Veach and Guibas 1995).
+/// the same film points: an estimate without a bias, as each draw is weighed by the density of
+/// all (balance heuristic, Veach and Guibas 1995).
 class GhostCamera final : public Camera {
   public:
     /// in_order: brings the light that no surface reflects, through the same lens; nullptr: ghosts
@@ -33,8 +32,7 @@ class GhostCamera final : public Camera {
 
     std::shared_ptr<const Camera> in_order_;
     GhostOptics optics_;
-    GhostPupils pupils_;
-    GhostRegions regions_;
+    GhostDraws draws_;
     LensIndices<f4> line_d_;
 };
 

@@ -12,8 +12,10 @@ namespace {
 
 constexpr std::array<double, 4> kVisible_nm{450, 517, 583, 650};
 
-std::vector<GhostPair> pairs_of(const Lens& lens, const LensCoats& coats) {
+std::vector<GhostPair> pairs_of(const Lens& lens, const std::optional<CoatTables>& tables) {
     std::vector<GhostPair> out;
+    if (!tables) return out;
+    const LensCoats& coats = tables->coats();
     for (int first = 1; first < lens.size(); ++first)
         for (int second = 0; second < first; ++second)
             if (!coats.ideal(first) && !coats.ideal(second)) out.push_back({first, second});
@@ -24,9 +26,7 @@ std::vector<GhostPair> pairs_of(const Lens& lens, const LensCoats& coats) {
 
 GhostOptics::GhostOptics(std::shared_ptr<const LensCamera> camera)
     : camera_(std::move(camera)),
-      coats_(lens(), camera_->input().coating),
-      tables_(lens(), camera_->input().coating),
-      pairs_(pairs_of(lens(), coats_)),
+      pairs_(pairs_of(lens(), camera_->optics().coats())),
       rear_mm_(lens().prescription().surfaces.back().semi_diameter_mm) {}
 
 float GhostOptics::rear_mm2() const {
@@ -80,12 +80,13 @@ f4 GhostOptics::coat_share(const CoatHit& hit, const LensIndices<f4>& indices, f
     if (s.medium_before == s.medium_after) return splat(1.f);
     const f4& into =
         indices.of_medium[hit.towards == Towards::Film ? s.medium_after : s.medium_before];
-    if (!hit.mirrors) return tables_.transmittance(hit.surface, {hit.index, into, hit.cosine}, nm);
+    if (!hit.mirrors) return tables().transmittance(hit.surface, {hit.index, into, hit.cosine}, nm);
     f4 out{};
     for (int i = 0; i < 4; ++i)
         out[i] = i > 0 && nm[i] == nm[i - 1] && hit.cosine[i] == hit.cosine[i - 1]
                      ? out[i - 1]
-                     : float(coats_
+                     : float(tables()
+                                 .coats()
                                  .at(hit.surface, hit.towards,
                                      {double(hit.index[i]), double(into[i]), double(hit.cosine[i]),
                                       double(nm[i])})
@@ -96,7 +97,8 @@ f4 GhostOptics::coat_share(const CoatHit& hit, const LensIndices<f4>& indices, f
 float GhostOptics::reflects(GhostPair pair) const {
     const auto along_axis = [&](int surface, double nm) {
         const auto& s = lens().surfaces<double>()[size_t(surface)];
-        return coats_
+        return tables()
+            .coats()
             .at(surface, Towards::Film,
                 {lens().media()[s.medium_before].index(nm),
                  lens().media()[s.medium_after].index(nm), 1, nm})

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "camera/ghosts/ghost_trace.h"
-#include "camera/lens/lens_coats.h"
 #include "camera/models/lens_camera.h"
 
 namespace petzval {
@@ -50,11 +49,11 @@ class GhostOptics {
         bool mirrors;
         f4 cosine, index;
     };
+    /// That of the camera's lens; there is one where there are pairs.
+    [[nodiscard]] const CoatTables& tables() const { return *camera_->optics().coats(); }
     [[nodiscard]] f4 coat_share(const CoatHit&, const LensIndices<f4>&, f4 nm) const;
 
     std::shared_ptr<const LensCamera> camera_;
-    LensCoats coats_;
-    CoatTables tables_;
     std::vector<GhostPair> pairs_;
     double rear_mm_;
 };

@@ -152,20 +152,22 @@ float GhostPupils::light_of(uint32_t pair) const {
     return sum;
 }
 
-GhostDraw GhostPupils::draw(V2f film_mm, float pick, V2f u) const {
-    const auto pair = std::min(size_t(std::ranges::upper_bound(up_to_, pick) - up_to_.begin()),
-                               up_to_.size() - 1);
-    const auto number = static_cast<uint32_t>(pair);
+uint32_t GhostPupils::pair(float pick) const {
+    const auto found = std::ranges::upper_bound(up_to_, pick) - up_to_.begin();
+    return static_cast<uint32_t>(std::min(size_t(found), up_to_.size() - 1));
+}
+
+V2f GhostPupils::point_mm(uint32_t pair, V2f film_mm, V2f u) const {
     if (u.x < kWhole)
-        return {number, uniform_disk({u.x / kWhole, u.y}) * static_cast<float>(optics_.rear_mm())};
-    return {number, region(number, film_mm).at(film_mm, 0, {(u.x - kWhole) / (1 - kWhole), u.y})};
+        return uniform_disk({u.x / kWhole, u.y}) * static_cast<float>(optics_.rear_mm());
+    return region(pair, film_mm).at(film_mm, 0, {(u.x - kWhole) / (1 - kWhole), u.y});
 }
 
 float GhostPupils::density(V2f film_mm, const GhostDraw& drawn) const {
     const GhostRegion& from = region(drawn.pair, film_mm);
     const float within =
         from.contains(film_mm, 0, drawn.rear_mm) ? (1 - kWhole) / from.area_mm2() : 0.f;
-    return chances_[drawn.pair] * (kWhole / optics_.rear_mm2() + within);
+    return kWhole / optics_.rear_mm2() + within;
 }
 
 }  // namespace petzval

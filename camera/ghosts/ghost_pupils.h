@@ -9,22 +9,19 @@
 
 namespace petzval {
 
-/// A pair of GhostOptics::pairs(), by number, and a point beside the axis on the last surface.
-struct GhostDraw {
-    uint32_t pair;
-    V2f rear_mm;
-};
-
 class GhostPupils {
   public:
     /// The optics must outlive it. For each pair, rays with a fixed seed tell where those that pass
     /// the iris cross the last surface, and how much light they bring.
     explicit GhostPupils(const GhostOptics&);
 
-    /// Drawn pair and point for a film point: the whole of the last surface, and mostly where the
-    /// iris is seen through. pick in [0, 1), u in [0, 1)^2.
-    [[nodiscard]] GhostDraw draw(V2f film_mm, float pick, V2f u) const;
-    /// Density of a draw, 1/mm^2; above 0 on all of the last surface.
+    /// Drawn pair, by its light; pick in [0, 1). And the chance of each.
+    [[nodiscard]] uint32_t pair(float pick) const;
+    [[nodiscard]] float chance(uint32_t pair) const { return chances_[pair]; }
+    /// Drawn point of the last surface for a pair: anywhere, and mostly where the film point sees
+    /// the iris. u in [0, 1)^2.
+    [[nodiscard]] V2f point_mm(uint32_t pair, V2f film_mm, V2f u) const;
+    /// Density of a point for its pair, 1/mm^2; above 0 on all of the last surface.
     [[nodiscard]] float density(V2f film_mm, const GhostDraw&) const;
 
   private:

@@ -17,6 +17,12 @@ namespace petzval {
     return (1 / (nm * nm) - kAtD) / (kAt400 - kAtD);
 }
 
+/// A pair of GhostOptics::pairs(), by number, and a point beside the axis on the last surface.
+struct GhostDraw {
+    uint32_t pair;
+    V2f rear_mm;
+};
+
 /// Rectangle on the last surface, across the axis, that follows the film point and the wavelength
 /// in straight lines: some of the light of a ghost comes through it. Lengths in mm.
 struct GhostRegion {

@@ -17,8 +17,6 @@ constexpr int kMostParts = 60'000;
 /// Cells across the longer side of the film.
 constexpr int kCells = 64;
 constexpr size_t kMostInCell = 2048;
-/// Of the last surface's area, from which on a region is no better than the surface.
-constexpr float kWidest = 0.25f;
 /// Share of the choice among pairs, and among regions of a pair, that is the same for all: their
 /// light is known by few rays.
 constexpr float kEvenly = 0.1f;
@@ -65,9 +63,7 @@ GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeatu
     int parts_left = kMostParts;
     for (const GhostLamp& lamp : lamps)
         for (const uint32_t pair : pairs) search.find(pair, lamp, parts_left, regions_);
-    std::erase_if(regions_, [&](const GhostRegion& r) {
-        return !(r.light > 0) || r.area_mm2() > kWidest * optics.rear_mm2();
-    });
+    std::erase_if(regions_, [](const GhostRegion& r) { return !(r.light > 0); });
     film_mm_ = V2f(float(optics.camera().input().film_width_mm),
                    float(optics.camera().input().film_height_mm));
     const float longer = std::max(film_mm_.x, film_mm_.y);
@@ -153,17 +149,38 @@ float GhostRegions::Serving::chance(const GhostRegion& r) const {
     return (1 - kEvenly) * r.light / light + kEvenly / count;
 }
 
+auto GhostRegions::picked(std::span<const Group> groups, float& pick) -> const Group& {
+    auto group = std::ranges::upper_bound(groups, pick, {}, &Group::up_to);
+    if (group == groups.end()) --group;
+    const float before = group == groups.begin() ? 0 : (group - 1)->up_to;
+    pick = (pick - before) / (group->up_to - before);
+    return *group;
+}
+
+auto GhostRegions::group_of(std::span<const Group> groups, uint32_t pair)
+    -> std::pair<const Group*, float> {
+    const auto group = std::ranges::lower_bound(groups, pair, {}, &Group::pair);
+    if (group == groups.end() || group->pair != pair) return {nullptr, 0.f};
+    return {&*group, group->up_to - (group == groups.begin() ? 0 : (group - 1)->up_to)};
+}
+
+uint32_t GhostRegions::pair(V2f film_mm, float pick) const {
+    return picked(groups_at(film_mm), pick).pair;
+}
+
+float GhostRegions::chance(V2f film_mm, uint32_t pair) const {
+    return group_of(groups_at(film_mm), pair).second;
+}
+
 auto GhostRegions::draw(V2f film_mm, float wave, float pick, V2f u) const
     -> std::optional<GhostDraw> {
     const auto groups = groups_at(film_mm);
     if (groups.empty()) return {};
-    auto group = std::ranges::upper_bound(groups, pick, {}, &Group::up_to);
-    if (group == groups.end()) --group;
-    const float before = group == groups.begin() ? 0 : (group - 1)->up_to;
-    float left = (pick - before) / (group->up_to - before);
-    const Serving all = serving(*group, film_mm);
+    const Group& group = picked(groups, pick);
+    float left = pick;
+    const Serving all = serving(group, film_mm);
     const GhostRegion* chosen = nullptr;
-    for (uint32_t i = group->first; i < group->end; ++i) {
+    for (uint32_t i = group.first; i < group.end; ++i) {
         const GhostRegion& r = regions_[members_[i]];
         if (!r.serves(film_mm)) continue;
         chosen = &r;
@@ -178,9 +195,8 @@ auto GhostRegions::draw(V2f film_mm, float wave, float pick, V2f u) const
 }
 
 float GhostRegions::density(V2f film_mm, float wave, const GhostDraw& drawn) const {
-    const auto groups = groups_at(film_mm);
-    const auto group = std::ranges::lower_bound(groups, drawn.pair, {}, &Group::pair);
-    if (group == groups.end() || group->pair != drawn.pair) return 0;
+    const auto [group, chance] = group_of(groups_at(film_mm), drawn.pair);
+    if (!group) return 0;
     const Serving all = serving(*group, film_mm);
     float sum = 0;
     for (uint32_t i = group->first; i < group->end; ++i) {
@@ -191,8 +207,7 @@ float GhostRegions::density(V2f film_mm, float wave, const GhostDraw& drawn) con
         sum += all.chance(r) / r.area_mm2() *
                (kWideShare / (kWider * kWider) + (within ? 1 - kWideShare : 0.f));
     }
-    const float before = group == groups.begin() ? 0 : (group - 1)->up_to;
-    return sum * (group->up_to - before);
+    return sum * chance;
 }
 
 }  // namespace petzval

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "camera/ghosts/ghost_optics.h"
-#include "camera/ghosts/ghost_pupils.h"
+#include "camera/ghosts/ghost_region.h"
 #include "core/light/small_features.h"
 
 namespace petzval {
@@ -22,8 +24,11 @@ class GhostRegions {
     /// into the scene.
     GhostRegions(const GhostOptics&, std::span<const SmallFeature>);
 
-    [[nodiscard]] bool empty() const { return regions_.empty(); }
-    [[nodiscard]] const std::vector<GhostRegion>& regions() const { return regions_; }
+    /// Whether there are regions for film points about this one.
+    [[nodiscard]] bool serve(V2f film_mm) const { return !groups_at(film_mm).empty(); }
+    /// Drawn pair, by the light of its regions there; pick in [0, 1). And the chance of each.
+    [[nodiscard]] uint32_t pair(V2f film_mm, float pick) const;
+    [[nodiscard]] float chance(V2f film_mm, uint32_t pair) const;
     /// Drawn pair and point of the last surface; nothing where no region serves the film point.
     [[nodiscard]] std::optional<GhostDraw> draw(V2f film_mm, float wave, float pick, V2f u) const;
     /// Density with which draw() gives a point for a pair, 1/mm^2.
@@ -38,6 +43,11 @@ class GhostRegions {
     };
     void list_regions();
     [[nodiscard]] std::span<const Group> groups_at(V2f film_mm) const;
+    /// Group that a number in [0, 1) picks; it becomes one within the group.
+    [[nodiscard]] static const Group& picked(std::span<const Group>, float& pick);
+    /// Group of a pair and its chance; nullptr: none there.
+    [[nodiscard]] static std::pair<const Group*, float> group_of(std::span<const Group>,
+                                                                 uint32_t pair);
     /// Regions of a group that serve a film point: their light, and the chance of each.
     struct Serving {
         float light = 0, count = 0;

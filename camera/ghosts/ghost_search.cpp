@@ -136,7 +136,12 @@ class PairSearch {
     /// unit: light on the film for each mm^2 of light that enters.
     PairSearch(const GhostOptics& optics, const LampRays& rays, uint32_t pair, double unit,
                int& parts_left, std::vector<GhostRegion>& out)
-        : rays_(rays), pair_(pair), unit_(unit), out_(out), left_(parts_left) {
+        : rays_(rays),
+          pair_(pair),
+          unit_(unit),
+          rear_mm_(float(optics.rear_mm())),
+          out_(out),
+          left_(parts_left) {
         const V2f corner = optics.camera().film_mm(V2f(0.f));
         film_ = {std::fabs(corner.x), std::fabs(corner.y)};
     }
@@ -155,9 +160,27 @@ class PairSearch {
                r.film_high.y >= -film_.y;
     }
 
+    /// Region where a few rays reach the film and too few of those beside them exist to tell where:
+    /// the whole of the last surface, for film points about theirs.
+    [[nodiscard]] GhostRegion around(const std::vector<V2d>& lit_mm) const {
+        constexpr float kAbout = 0.1f;  // of the film's half size
+        GhostRegion out{};
+        out.film_low = out.film_high = out.film = V2f(lit_mm[0]);
+        for (const V2d& p : lit_mm) {
+            out.film_low = {std::min(out.film_low.x, float(p.x)),
+                            std::min(out.film_low.y, float(p.y))};
+            out.film_high = {std::max(out.film_high.x, float(p.x)),
+                             std::max(out.film_high.y, float(p.y))};
+        }
+        out.film_low -= film_ * kAbout, out.film_high += film_ * kAbout;
+        out.half = V2f(rear_mm_);
+        return out;
+    }
+
     const LampRays& rays_;
     uint32_t pair_;
     double unit_;
+    float rear_mm_;
     std::vector<GhostRegion>& out_;
     V2f film_;
     int& left_;
@@ -169,12 +192,13 @@ void PairSearch::find(const Part& whole, const Level& level) {
     const auto part_of = [&, n = count](int k) {
         return Part{whole.corner_mm + V2d(k % n, k / n) * side, side};
     };
-    std::vector<double> light_mm2, lit;
+    std::vector<double> light_mm2;
+    std::vector<std::vector<V2d>> lit_mm;  // film points that the light reaches
     for (int k = 0; k < count * count; ++k) {
-        light_mm2.push_back(0), lit.push_back(0);
+        light_mm2.push_back(0), lit_mm.emplace_back();
         for (const GhostRecord& r : rays_.through(part_of(k), batches, Clip::Yes)) {
             light_mm2.back() += r.light_mm2;
-            lit.back() += r.light_mm2 > 0;
+            if (r.light_mm2 > 0) lit_mm.back().push_back(r.film_mm);
         }
     }
     const auto light_near = [&, n = count](int k) {
@@ -197,12 +221,15 @@ void PairSearch::find(const Part& whole, const Level& level) {
             ((is_bad && (divisions > kDivisions - kTried || sees > kHelps * saw)) || by_rims)) {
             const size_t before = out_.size();
             // As many rays as it takes to meet the light again.
-            const double rays = 8 * batches / lit[size_t(k)];
+            const double rays = 8. * batches / double(lit_mm[size_t(k)].size());
             find(part_of(k),
                  {2, divisions - 1, std::clamp(uint32_t(rays / 4), kBatches, kFirstBatches), sees});
             if (out_.size() > before) continue;  // else its rays slip through between others
         }
-        if (!tells || !meets_film(region)) continue;
+        if (!tells || !meets_film(region)) {
+            if (!(light > 0)) continue;
+            region = around(lit_mm[size_t(k)]);
+        }
         region.pair = pair_;
         // Of the part of its film points that the film has: the light counts there alone.
         const V2f low(std::max(region.film_low.x, -film_.x), std::max(region.film_low.y, -film_.y)),

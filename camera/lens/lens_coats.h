@@ -46,6 +46,8 @@ class CoatTables {
     /// Transmittance, a share of light, of a surface where the medium changes: within 2e-3 of
     /// LensCoats up to 84 degrees in the medium of the lower index.
     [[nodiscard]] f4 transmittance(int surface, const Crossing&, f4 nm) const;
+    /// The coats, exact.
+    [[nodiscard]] const LensCoats& coats() const { return coats_; }
 
   private:
     struct Table {

@@ -74,8 +74,7 @@ class LensCamera final : public Camera {
     [[nodiscard]] const LensCameraInput& input() const { return in_; }
     [[nodiscard]] const LensOptics& optics() const { return optics_; }
     [[nodiscard]] const Pose& pose() const { return pose_; }
-    /// Factor of the weights for the exposure.
-    [[nodiscard]] float gain() const { return gain_; }
+    [[nodiscard]] float gain() const { return gain_; }  ///< of the weights, for the exposure
     /// Ray in front of the lens, in the world. S: float or double.
     template <class S>
     [[nodiscard]] Ray in_world(const SceneRay<S>&) const;

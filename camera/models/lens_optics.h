@@ -81,6 +81,8 @@ class LensOptics {
     LensOptics(std::shared_ptr<const Lens>, Iris, Coating, double film_mm, double film_reach_mm);
 
     [[nodiscard]] const RayAimer& aimer() const { return aimer_; }
+    /// Coats of the surfaces; nothing: Ideal.
+    [[nodiscard]] const std::optional<CoatTables>& coats() const { return coats_; }
     [[nodiscard]] StopDraw stop_at(V2f film_mm) const {
         return {iris_, bounds_.at(film_mm.length()), film_mm};
     }
@@ -112,7 +114,7 @@ class LensOptics {
   private:
     std::shared_ptr<const Lens> lens_;
     Iris iris_;
-    std::optional<CoatTables> coats_;  ///< none: Ideal
+    std::optional<CoatTables> coats_;
     double film_mm_;
     float stop_rim2_mm2_;
     RayAimer aimer_;

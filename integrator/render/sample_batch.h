@@ -137,7 +137,7 @@ void SampleBatch<Tracer>::trace(size_t i) {
                                              layers && !path.to_target, guide && !path.to_target},
                                             of_path);
         if (path.to_target) {
-            ++stats_.target_rays;
+            stats_.target_rays += !path.of_ghost;
             continue;
         }
         layers = guide = false;
@@ -151,25 +151,23 @@ void SampleBatch<Tracer>::trace(size_t i) {
     add_to_film(i, sample, light);
 }
 
-// Ghosts are clamped by themselves and added last, so that the rest is that of a picture without.
+// Ghosts are clamped by themselves, so that the rest is that of a picture without.
 template <class Tracer>
 void SampleBatch<Tracer>::add_to_film(size_t i, FilmSample& sample,
                                       const std::array<f4, 2>& light) {
     const SampleId id = ids_[i];
     const Bands& bands = bands_[i];
-    const f4 order = clamped(light[0], bands, job_.clamp_nits),
-             ghosts = clamped(light[1], bands, job_.clamp_nits);
+    const f4 ghosts = clamped(light[1], bands, job_.clamp_nits),
+             all = clamped(light[0], bands, job_.clamp_nits) + ghosts;
     const Rgb of_ghosts = to_rgb(ghosts, bands);
-    sample.colour = to_rgb(order, bands) + of_ghosts;
+    sample.colour = to_rgb(all, bands);
     sample.aov[static_cast<size_t>(Aov::Ghosts)] = {of_ghosts[0], of_ghosts[1], of_ghosts[2]};
     if (job_.velocity && sample.hit)
         sample.aov[static_cast<size_t>(Aov::Velocity)] =
             job_.velocity->at(sample.first, points_[i].film * V2f(frame_px_));
     if (film_->spectral())
         film_->add(id.x, id.y, id.index, sample,
-                   {id.index % job_.replicates, order + ghosts,
-                    job_.observer.to_xyz(order + ghosts, bands)},
-                   bands);
+                   {id.index % job_.replicates, all, job_.observer.to_xyz(all, bands)}, bands);
     else
         film_->add(id.x, id.y, id.index, sample);
 }

@@ -73,10 +73,11 @@ struct LensLosses {
 };
 
 /// Camera paths of one film point. None: vignetted. 1: shared by all lanes. 2 to 4: split by
-/// dispersion. As many again may go to a target, and five may bring light of ghosts.
+/// dispersion. As many again may go to a target; all these again may go where a star comes from;
+/// and five may bring light of ghosts.
 class CameraSample {
   public:
-    static constexpr size_t kMostPaths = 13;
+    static constexpr size_t kMostPaths = 21;
 
     LensLosses<uint32_t> lanes;
     float exposure = 1;  ///< mean weight of a lane where nothing is lost

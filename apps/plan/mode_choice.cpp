@@ -22,8 +22,10 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
                        TbbExecutor& executor) {
     ModeChoice out{0, {}, resolved_request(first)};
     out.scene.spectral.mode = SpectralMode::Wavelengths;
-    // Ghosts take part in each way alike, and would be searched for each.
+    // Ghosts and diffraction take part in each way alike, and would be made ready for each.
     const GhostUse ghosts = std::exchange(out.scene.camera.ghosts, GhostUse::Off);
+    const DiffractionUse diffraction =
+        std::exchange(out.scene.camera.diffraction, DiffractionUse::Off);
     const auto with = [&](DispersionMode mode) {
         out.scene.camera.dispersion = mode;
         return view_of(first, out.scene, executor);
@@ -57,6 +59,7 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
         split->setup().from.camera.focus_plane(), request.scene.size);
     out.scene.camera.dispersion = out.mode();
     out.scene.camera.ghosts = ghosts;
+    out.scene.camera.diffraction = diffraction;
     return out;
 }
 

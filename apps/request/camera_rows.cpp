@@ -141,6 +141,8 @@ std::vector<RequestField> lens_fields() {
             "ghosts", in::camera(&CameraRequest::ghosts),
             "light that two surfaces of a traced lens reflect: auto (default; where the ⟨coating⟩ "
             "reflects any), off, only"),
+        choice("diffraction", in::camera(&CameraRequest::diffraction),
+               "light that the iris spreads: off (default), auto (where it changes the picture)"),
         method(choice("lens-precision", in::camera(&CameraRequest::precision),
                       "rays through the lens in float (default) or double"))};
 }

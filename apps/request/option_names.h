@@ -59,6 +59,9 @@ template <>
 inline constexpr auto kOptionNames<Fit> = std::to_array<OptionName<Fit>>({{"lens", Fit::Lens},
                                                                           {"fov", Fit::Fov}});
 template <>
+inline constexpr auto kOptionNames<DiffractionUse> = std::to_array<OptionName<DiffractionUse>>(
+    {{"off", DiffractionUse::Off}, {"auto", DiffractionUse::Auto}});
+template <>
 inline constexpr auto kOptionNames<GhostUse> = std::to_array<OptionName<GhostUse>>(
     {{"auto", GhostUse::Auto}, {"off", GhostUse::Off}, {"only", GhostUse::Only}});
 template <>

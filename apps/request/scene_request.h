@@ -51,6 +51,7 @@ enum class Fit : uint8_t { Lens, Fov };
 /// Ghosts of a traced lens: light that two of its surfaces reflect. Auto: wherever its coating
 /// reflects any; Only: they alone make the picture.
 enum class GhostUse : uint8_t { Auto, Off, Only };
+enum class DiffractionUse : uint8_t { Off, Auto };
 
 /// Vertical angles of view that a perspective camera may be asked for.
 inline constexpr float kSmallestFov_deg = 0.001f, kLargestFov_deg = 179.f;
@@ -82,6 +83,7 @@ struct CameraRequest {
     std::optional<DispersionMode> dispersion;  ///< absent: as a plan finds, or dispersion_by()
     Coating coating = Coating::Ideal;
     GhostUse ghosts = GhostUse::Auto;
+    DiffractionUse diffraction = DiffractionUse::Off;
     Precision precision = Precision::Float;
     ExposureMode exposure = ExposureMode::Normalised;
     float iso = 100, shutter_s = 0.01f;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/setup/ghosts.h"
 
+#include "apps/setup/lamps_in_view.h"
 #include "camera/ghosts/ghost_camera.h"
 #include "io/base/error.h"
 
@@ -9,20 +10,6 @@ namespace {
 
 std::shared_ptr<const LensCamera> traced_lens(const View& view) {
     return std::dynamic_pointer_cast<const LensCamera>(view.still);
-}
-
-/// Whether a lamp in front of the camera is seen from the middle of its entrance pupil.
-bool shines_in(const SmallFeature& lamp, const Pose& pose, const Bvh& bvh) {
-    constexpr float kLeastCosine = 0.17f;  // light from 80 degrees and more hardly enters
-    const V3f to = lamp.at_infinity ? lamp.centre : lamp.centre - pose.origin;
-    const float away = to.length();
-    if (!(away > lamp.radius_m) && !lamp.at_infinity) return false;
-    Ray ray;
-    ray.origin = pose.origin;
-    ray.direction = to / away;
-    if (!(-ray.direction.dot(pose.back) > kLeastCosine)) return false;
-    if (!lamp.at_infinity) ray.t_max = away - 1.01f * lamp.radius_m;
-    return !bvh.intersect(ray);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "apps/request/option_names.h"
 #include "apps/setup/camera/camera_model.h"
 #include "apps/setup/camera/camera_setup.h"
+#include "apps/setup/diffraction.h"
 #include "apps/setup/ghosts.h"
 #include "apps/setup/glass_remarks.h"
 #include "apps/setup/input_files.h"
@@ -245,6 +246,11 @@ std::vector<SmallFeature> compose_camera(const SceneRequest& asked, const Render
             aims->set_targets(view.targets);
             if (view.targets) view.camera = std::move(aims);
         }
+    if (asked.camera.diffraction == DiffractionUse::Auto)
+        view.camera = with_diffraction(
+            asked, view,
+            features.empty() ? small_features_of(*prepared.scene, kMostTargets) : features,
+            *prepared.bvh);
     view.camera = with_ghosts(asked.camera, view, *prepared.scene, *prepared.bvh);
     next_step();
     view.camera = moved(std::move(view.camera), view);

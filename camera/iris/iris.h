@@ -42,6 +42,8 @@ class Iris {
     [[nodiscard]] double area_mm2() const { return area_; }
     /// Distance of the shape's farthest point from the axis.
     [[nodiscard]] float bounding_radius_mm() const { return static_cast<float>(reach_); }
+    /// Contours about what it lets through, the rim left out; none of a mask.
+    [[nodiscard]] std::vector<std::vector<V2d>> outline_mm() const;
     /// Share of area_mm2() that lies farther than this from the axis. In closed form, error below
     /// 1e-9.
     [[nodiscard]] double share_beyond(double radius_mm) const;
@@ -77,6 +79,7 @@ class Iris {
     float rim2_mm2_ = 0;
     double reach_, area_, share_cut_ = 0;
     Shape shape_;
+    std::vector<std::vector<V2d>> contours_mm_;  ///< of a polygon
 };
 
 }  // namespace petzval

@@ -110,6 +110,11 @@ Iris::Iris(const ApertureShape& shape, double stop_radius_mm, ApertureScale scal
         stop_radius_mm *
         (scale == ApertureScale::Inscribed ? 1 / reach : std::sqrt(std::numbers::pi / area));
     shape_ = scaled(shape, mm, way);
+    if (const auto* polygon = std::get_if<Polygon>(&shape)) {
+        contours_mm_ = polygon->contours;
+        for (auto& contour : contours_mm_)
+            for (V2d& p : contour) p *= mm;
+    }
     reach_ = mm * reach;
     area_ = std::visit([](const auto& s) { return s.area_mm2(); }, shape_);
     share_cut_ = share_beyond(rim_radius_mm);
@@ -118,6 +123,18 @@ Iris::Iris(const ApertureShape& shape, double stop_radius_mm, ApertureScale scal
     area_ *= 1 - share_cut_;
     reach_ = rim_radius_mm;
     rim2_mm2_ = static_cast<float>(rim_radius_mm * rim_radius_mm);
+}
+
+std::vector<std::vector<V2d>> Iris::outline_mm() const {
+    constexpr int corners = 720;
+    const auto* round = std::get_if<Round>(&shape_);
+    if (!round) return contours_mm_;
+    std::vector<V2d> circle;
+    for (int i = 0; i < corners; ++i) {
+        const double angle = 2 * std::numbers::pi * i / corners;
+        circle.push_back(V2d(std::cos(angle), std::sin(angle)) * round->radius_mm);
+    }
+    return {circle};
 }
 
 double Iris::share_beyond(double radius_mm) const {

@@ -6,13 +6,8 @@
 namespace petzval {
 
 std::unique_ptr<TargetCamera> target_camera(const std::shared_ptr<const Camera>& camera) {
-    if (auto lens = std::dynamic_pointer_cast<const LensCamera>(camera))
-        return std::make_unique<StopTargetCamera>(std::move(lens));
-    if (auto lens = std::dynamic_pointer_cast<const AberratedLensCamera>(camera))
-        return std::make_unique<StopTargetCamera>(std::move(lens));
-    if (auto lens = std::dynamic_pointer_cast<const ThinLensCamera>(camera); lens && lens->iris())
-        return std::make_unique<StopTargetCamera>(std::move(lens));
-    return nullptr;
+    auto lens = stop_camera(camera);
+    return lens ? std::make_unique<StopTargetCamera>(*std::move(lens)) : nullptr;
 }
 
 }  // namespace petzval

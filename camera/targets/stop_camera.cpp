@@ -182,13 +182,24 @@ void through(const LensCamera& camera, std::span<const FilmPoint> points,
 
 }  // namespace
 
+std::optional<StopCamera> stop_camera(const std::shared_ptr<const Camera>& camera) {
+    if (auto lens = std::dynamic_pointer_cast<const LensCamera>(camera)) return lens;
+    if (auto lens = std::dynamic_pointer_cast<const AberratedLensCamera>(camera)) return lens;
+    if (auto lens = std::dynamic_pointer_cast<const ThinLensCamera>(camera); lens && lens->iris())
+        return lens;
+    return std::nullopt;
+}
+
+const Iris& iris_of(const StopCamera& camera) {
+    return std::visit([](const auto& c) -> const Iris& { return iris_of(*c); }, camera);
+}
+
 double stop_reach_mm(const StopCamera& camera) {
-    return std::visit([](const auto& c) { return double(iris_of(*c).bounding_radius_mm()); },
-                      camera);
+    return double(iris_of(camera).bounding_radius_mm());
 }
 
 double iris_area_mm2(const StopCamera& camera) {
-    return std::visit([](const auto& c) { return iris_of(*c).area_mm2(); }, camera);
+    return iris_of(camera).area_mm2();
 }
 
 const Pose& pose_of(const StopCamera& camera) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -23,6 +24,9 @@ inline constexpr auto kMiddle_nm = static_cast<float>(kLineD_nm);
 using StopCamera =
     std::variant<std::shared_ptr<const ThinLensCamera>, std::shared_ptr<const AberratedLensCamera>,
                  std::shared_ptr<const LensCamera>>;
+
+/// The camera as one with a stop; nothing for another.
+[[nodiscard]] std::optional<StopCamera> stop_camera(const std::shared_ptr<const Camera>&);
 
 /// Points of the stop of a batch of film points, mm.
 using StopPoints = std::array<V2f, kMostFilmPoints>;
@@ -45,6 +49,7 @@ struct StopCrossings {
 /// Radius of the stop, mm.
 [[nodiscard]] double stop_reach_mm(const StopCamera&);
 [[nodiscard]] double iris_area_mm2(const StopCamera&);
+[[nodiscard]] const Iris& iris_of(const StopCamera&);
 [[nodiscard]] const Pose& pose_of(const StopCamera&);
 /// Wavelength for which points of the stop are drawn, nm in air.
 [[nodiscard]] float leading_nm(const StopCamera&, const Bands&);

@@ -31,7 +31,11 @@ enum class Dim : uint32_t {
     TargetRest,              ///< whether a ray to a target brings more than what it finds
     Time,                    ///< while the shutter is open
     GhostPick,               ///< the two surfaces that reflect, and whether a ray is sent
-    GhostPoint               ///< on the last surface of the lens
+    GhostPoint,              ///< on the last surface of the lens
+    Diffraction,             ///< by how much a film point is displaced
+    DiffractionPick,         ///< the pattern and the wavelength that displace it
+    StarPick,                ///< the lamp whose star is looked for, and whether one is
+    StarPoint                ///< in the lamp's image
 };
 
 struct SampleId {

@@ -27,7 +27,7 @@ struct Lamp {
 
 constexpr int kBins = 6;
 /// Square bins of the film about a point, mm.
-struct Bins {
+struct ProfileBins {
     V2d middle_mm;
     double side_mm;  ///< of all together
 
@@ -85,7 +85,7 @@ void expect_same_profile(const char* name, const Lamp& lamp) {
             low = {std::min(low.x, at->x_mm), std::min(low.y, at->y_mm)};
             high = {std::max(high.x, at->x_mm), std::max(high.y, at->y_mm)};
         }
-    const Bins bins{(low + high) / 2, 1.1 * std::max(high.x - low.x, high.y - low.y)};
+    const ProfileBins bins{(low + high) / 2, 1.1 * std::max(high.x - low.x, high.y - low.y)};
 
     constexpr uint32_t kLights = 250'000;
     std::array<Moments, kBins * kBins> traced{}, found{};

@@ -14,6 +14,7 @@ void describe_iris(const CameraReport& c, Metadata& m) {
     m.emplace_back("petzval:apertureScale", name_of(c.asked.aperture_scale));
     if (c.asked.iris_sampling)
         m.emplace_back("petzval:irisSampling", name_of(*c.asked.iris_sampling));
+    m.emplace_back("petzval:diffraction", name_of(c.asked.diffraction));
     m.emplace_back("petzval:exposureMode", name_of(c.asked.exposure));
     if (c.asked.exposure == ExposureMode::Photographic) {
         m.emplace_back("petzval:iso", c.asked.iso);

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Camera whose light is diffracted by its stop.
+#pragma once
+
+#include <memory>
+
+#include "camera/diffraction/lamp_images.h"
+
+namespace petzval {
+
+/// Rays of another camera from displaced film points: each by a draw of the diffraction pattern as
+/// that film point sees it, so that the picture is that of rays, spread by the pattern. A sample
+/// belongs to its pixel still. All lanes share a displacement, drawn for one of them and weighed by
+/// the mean density of all. Where lamps shine, more samples go to their images; each draw is
+/// weighed by the density of both (balance heuristic, Veach and Guibas 1995).
+class DiffractionCamera final : public Camera {
+  public:
+    DiffractionCamera(std::shared_ptr<const Camera> rays, FilmSpread spread, LampImages lamps)
+        : rays_(std::move(rays)), spread_(std::move(spread)), lamps_(std::move(lamps)) {}
+
+    [[nodiscard]] CameraSample sample(const FilmPoint& point, const Bands& bands) const override {
+        return one_of_all(point, bands);
+    }
+    void sample_all(std::span<const FilmPoint>, std::span<const Bands>,
+                    std::span<CameraSample>) const override;
+
+  private:
+    struct Displaced {
+        V2f film;
+        f4 lanes;   ///< factor of each lane's weight
+        float mis;  ///< CameraPath::mis_weight
+    };
+    /// Displacements of a sample: by the pattern, and towards a lamp where one is looked for.
+    struct OfSample {
+        Displaced by_pattern;
+        std::optional<Displaced> to_lamp;
+    };
+    [[nodiscard]] OfSample displaced(const FilmPoint&, const Bands&) const;
+
+    std::shared_ptr<const Camera> rays_;
+    FilmSpread spread_;
+    LampImages lamps_;
+};
+
+}  // namespace petzval

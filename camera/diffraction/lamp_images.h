@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Images of lamps on the film and around it, from which the spikes of stars come.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "camera/diffraction/film_spread.h"
+#include "camera/target_camera.h"
+#include "core/light/small_features.h"
+
+namespace petzval {
+
+/// Places of the film that displaced film points are drawn from, beside those that the patterns
+/// draw: where lamps are imaged.
+class LampImages {
+  public:
+    static constexpr size_t kMost = 16;
+
+    LampImages() = default;
+    /// Images of the brightest lamps, up to half a frame beyond the edges. aims: whose targets the
+    /// lamps may be; nothing is cast into the scene.
+    LampImages(const TargetCamera& aims, V2i frame_px, std::span<const SmallFeature>,
+               const FilmSpread&);
+
+    [[nodiscard]] bool empty() const { return images_.empty(); }
+    /// What lamps bring to a film point, about.
+    struct Choice {
+        std::array<float, kMost> light{};
+        float sum = 0;
+        float chance = 0;  ///< that a sample looks for one of them
+    };
+    [[nodiscard]] Choice choice(V2f film) const;
+    /// Displacement of a film point into the image of a lamp; pick in [0, chance).
+    [[nodiscard]] V2f draw(const Choice&, V2f film, float pick, V2f u) const;
+    /// Density of draw(), the chance included, by area of the film.
+    [[nodiscard]] float density(const Choice&, V2f film, V2f displacement) const;
+
+  private:
+    struct Image {
+        V2f middle, half;  ///< of a box about it
+        float light;       ///< luminance, mean over the box
+        SpreadHere spread;
+        float disc_radius;  ///< about it in the plane of frequencies
+
+        [[nodiscard]] V2f frequency_from(V2f film) const {
+            return spread.frequency(middle - film, kMiddle_nm);
+        }
+    };
+    [[nodiscard]] Choice lights(V2f film) const;
+
+    std::vector<Image> images_;
+    float usual_ = 0;  ///< light of a film point that every second sample looks for
+};
+
+}  // namespace petzval

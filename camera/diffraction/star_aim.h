@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws of far displacements that end in the image of a lamp, most of them along spikes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "camera/diffraction/edge_runs.h"
+
+namespace petzval {
+
+/// Points of a disc in the plane of spatial frequencies, by directions of a pattern's lobes.
+class StarAim {
+  public:
+    /// The disc must lie beyond the pattern's radius, and the pattern outlive it.
+    StarAim(const FarPattern&, V2f middle, float disc_radius);
+
+    /// Whether a disc can be aimed at.
+    [[nodiscard]] static bool can(const FarPattern& pattern, V2f middle, float disc_radius) {
+        const float away = middle.length();
+        return away - disc_radius > pattern.radius() && away > 2 * disc_radius;
+    }
+    /// Share of the far light that falls on the disc, about.
+    [[nodiscard]] float share() const { return share_; }
+    [[nodiscard]] V2f draw(V2f u) const;
+    /// Density of draw() at a point; 0 outside of the disc.
+    [[nodiscard]] float density(V2f v) const;
+
+  private:
+    /// Lobe whose spike may cross the disc: from angle to angle about its normal.
+    struct Spike {
+        float from, to;       ///< radians
+        float tanh_half;      ///< of its width there
+        float share, passed;  ///< of the draws; of the lobe's light between the angles
+        float turned;         ///< angle of the lobe's normal against the disc's middle
+    };
+    static constexpr size_t kMostSpikes = 4;
+
+    V2f direction_;
+    float away_, disc_radius_, half_angle_, evenly_ = 0, share_ = 0;
+    std::array<Spike, kMostSpikes> spikes_{};
+    size_t count_ = 0;
+};
+
+}  // namespace petzval

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// The camera that diffracts: its rays against Airy's light within circles, its light in all, and
+// stars with draws towards lamps and without.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "camera/diffraction/diffraction_camera.h"
+#include "camera/targets/make_target_camera.h"
+#include "core/sampling/warp.h"
+#include "tests/support/lens_cameras.h"
+
+namespace petzval {
+namespace {
+
+using test::input_of;
+
+Bands lines_of(f4 nm) {
+    Bands out;
+    out.nm = nm, out.on = m4{-1, -1, -1, -1}, out.spectral = true;
+    out.pdf = splat(1.f);
+    return out;
+}
+const Bands kFourLines = lines_of(f4{440, 520, 590, 660});
+
+constexpr float kFov_rad = 0.6f, kAspect = 1.5f, kThinStop_mm = 1.5f;
+
+std::shared_ptr<const ThinLensCamera> thin_lens(const ApertureShape& shape = Disk{}) {
+    return std::make_shared<ThinLensCamera>(
+        ThinLens{M44f(), kFov_rad, kAspect, Iris(shape, double(kThinStop_mm)), 1e9f});
+}
+
+DiffractionCamera diffracting(std::shared_ptr<const Camera> rays, LampImages lamps = {}) {
+    FilmSpread spread(*stop_camera(rays));
+    return {std::move(rays), std::move(spread), std::move(lamps)};
+}
+
+Sampler sampler_of(uint32_t i, SamplerKind kind = SamplerKind::Owen) {
+    return {kind, 9, {0, 0, i}};
+}
+
+// A distant point's light: within an angle of r wavelength / diameter lies what Rayleigh's formula
+// says, for each of the lanes that share a ray.
+TEST(DiffractionCamera, LightOfEachWavelengthLiesWithinRadiiAsAirysDoes) {
+    const DiffractionCamera camera = diffracting(thin_lens());
+    constexpr uint32_t count = 1 << 17;
+    constexpr std::array radii{0.6, 1.2197, 3.0, 10.0, 60.0};
+    std::array<std::array<double, 4>, radii.size()> within{};
+    for (uint32_t i = 0; i < count; ++i) {
+        Bands bands = kFourLines;
+        bands.hero = int(i % 4);
+        for (const CameraPath& path : camera.sample({V2f(0.5f), sampler_of(i)}, bands)) {
+            const V3f d = path.ray.direction;
+            const double slope = std::hypot(double(d.x), double(d.y)) / -double(d.z);
+            for (int lane = 0; lane < 4; ++lane) {
+                const double unit = double(kFourLines.nm[lane]) * 1e-6 / (2 * double(kThinStop_mm));
+                for (size_t k = 0; k < radii.size(); ++k)
+                    if (slope < radii[k] * unit)
+                        within[k][size_t(lane)] +=
+                            double(path.weight[lane] * path.mis_weight) / count;
+            }
+        }
+    }
+    for (size_t k = 0; k < radii.size(); ++k) {
+        const double x = std::numbers::pi * radii[k];
+        const double exact =
+            1 - std::pow(std::cyl_bessel_j(0, x), 2) - std::pow(std::cyl_bessel_j(1, x), 2);
+        for (size_t lane = 0; lane < 4; ++lane)
+            EXPECT_NEAR(within[k][lane], exact, 0.006) << radii[k] << ' ' << lane;
+    }
+}
+
+// Of an even scene each film point gets what it gets without diffraction.
+TEST(DiffractionCamera, KeepsTheLightOfAnEvenScene) {
+    LensCameraInput in = input_of("double-gauss-100mm-f2");
+    in.iris = Iris(regular_polygon(6), 3);
+    const std::array<std::shared_ptr<const Camera>, 3> cameras{
+        thin_lens(), thin_lens(Mask{2, 2, {1, 0, 0.3f, 1}}), std::make_shared<LensCamera>(in)};
+    constexpr uint32_t count = 1 << 18;
+    for (const auto& rays : cameras) {
+        const DiffractionCamera camera = diffracting(rays);
+        for (const V2f film : {V2f(0.5f), V2f(0.02f, 0.97f), V2f(0.3f, 0.6f)}) {
+            f4 plain{}, spread{};
+            for (uint32_t i = 0; i < count; ++i) {
+                Bands bands = kFourLines;
+                bands.hero = int(i % 4);
+                const FilmPoint at{film, sampler_of(i)};
+                for (const CameraPath& path : rays->sample(at, bands)) plain += path.weight;
+                for (const CameraPath& path : camera.sample(at, bands))
+                    spread += path.weight * path.mis_weight;
+            }
+            // Lanes share rays, and so their light; each by itself is less sure.
+            EXPECT_NEAR(hsum(spread) / hsum(plain), 1, 1e-3f) << film;
+            for (int lane = 0; lane < 4; ++lane)
+                EXPECT_NEAR(spread[lane] / plain[lane], 1, 5e-3f) << film << lane;
+        }
+    }
+}
+
+// On the axis of a lens a unit of the stop's frequencies is one of its f-number: sin u' = 1 / 2N.
+TEST(DiffractionCamera, SpreadOfALensIsThatOfItsFNumber) {
+    for (const char* name :
+         {"double-gauss-100mm-f2", "takumar-50mm-f1.2", "canon-14mm-f2.8-asph"}) {
+        LensCameraInput in = input_of(name);
+        const double radius = 0.2 * double(in.iris.bounding_radius_mm());
+        in.iris = Iris(Disk{}, radius);
+        const auto lens = std::make_shared<LensCamera>(in);
+        const double sine = std::sqrt(lens->irradiance(V2f(0.f), 4096) / std::numbers::pi);
+        float pick = 0.5f;
+        const SpreadHere here = FilmSpread(StopCamera(lens)).at(V2f(0.5f), pick);
+        const double mm_of_unit = double(here.by_x.length()) * in.film_width_mm;
+        EXPECT_NEAR(mm_of_unit / (1e-6 * radius / sine), 1, 0.005) << name;
+        EXPECT_NEAR(double(here.by_y.length()) * in.film_height_mm / mm_of_unit, 1, 0.002) << name;
+    }
+}
+
+/// A sun straight ahead, tangent of its radius 0.003.
+SmallFeature sun() {
+    SmallFeature out{SmallFeature::Kind::Lamp, V3f(0, 0, -1)};
+    out.radius_m = out.reach_m = 0.003f;
+    out.at_infinity = true, out.area_m2 = 3e-5, out.radiance = 1e9;
+    return out;
+}
+
+struct Estimate {
+    double mean = 0, variance = 0;
+};
+Estimate light_at(const Camera& camera, V2f film, uint32_t count) {
+    double sum = 0, squares = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        double light = 0;
+        Bands bands = kFourLines;
+        bands.hero = int(i % 4);
+        for (const CameraPath& path :
+             camera.sample({film, sampler_of(i, SamplerKind::Independent)}, bands))
+            if (path.ray.direction.z < -std::cos(0.003f))
+                light += double(hsum(path.weight) * path.mis_weight);
+        sum += light, squares += light * light;
+    }
+    return {sum / count, (squares - sum * sum / count) / count / count};
+}
+
+// Against the pattern's own density, summed over the sun's disc.
+TEST(DiffractionCamera, StarsHaveTheirLightWithDrawsTowardsLampsAndLoseTheirNoise) {
+    const auto rays = thin_lens(regular_polygon(5));
+    const FilmSpread spread(*stop_camera(rays));
+    const std::array lamps{sun()};
+    const LampImages images(*target_camera(rays), {600, 400}, lamps, spread);
+    ASSERT_FALSE(images.empty());
+    const DiffractionCamera plain = diffracting(rays), aimed = diffracting(rays, images);
+    const float high = 2 * std::tan(kFov_rad / 2);
+    const V2f disc = V2f(0.003f / kAspect, 0.003f) / high;
+    // In the sun, beside it, in a spike near and far, and between two.
+    for (const V2f& film : {V2f(0.5f), V2f(0.506f, 0.5f), V2f(0.5f, 0.55f), V2f(0.5f, 0.8f),
+                            V2f(0.5f, 1.f), V2f(0.7f, 0.5f)}) {
+        double exact = 0;
+        constexpr uint32_t points = 1 << 19;
+        for (uint32_t i = 0; i < points; ++i) {
+            const V2f at = V2f(0.5f) + uniform_disk(sampler_of(i).get2(Dim::Lens)) * disc;
+            float pick = 0.5f;
+            const SpreadHere there = spread.at(at, pick);
+            for (int lane = 0; lane < 4; ++lane)
+                exact += double(there.density(at - film, kFourLines.nm[lane])) / points;
+        }
+        exact *= std::numbers::pi * double(disc.x * disc.y);
+        constexpr uint32_t count = 1 << 16;
+        const Estimate with = light_at(aimed, film, count),
+                       without = light_at(plain, film, 4 * count);
+        EXPECT_NEAR(with.mean, exact, 4.5 * std::sqrt(with.variance) + 0.01 * exact) << film;
+        // The rare draws that meet the sun bring the light of four lanes each.
+        const double rare = std::sqrt(4 * exact / (4. * count));
+        EXPECT_NEAR(without.mean, exact, 5 * rare + 0.01 * exact + 20. / count * (rare > exact))
+            << film;
+        if (film != V2f(0.5f)) EXPECT_LT(with.variance * count * 10, 4 * exact) << film;
+    }
+}
+
+}  // namespace
+}  // namespace petzval

@@ -10,6 +10,25 @@
 #include "camera/targets/make_target_camera.h"
 
 namespace petzval {
+namespace {
+
+/// Tangent of the angular radius up to which a lamp has a star: wider ones are met often enough,
+/// and their spikes overlap.
+constexpr float kMostWide = 0.05f;
+
+/// Small lamps that shine into a camera.
+std::vector<SmallFeature> star_lamps(std::span<const SmallFeature> things, const Pose& pose,
+                                     const Bvh& bvh) {
+    std::vector<SmallFeature> out;
+    std::ranges::copy_if(things, std::back_inserter(out), [&](const SmallFeature& thing) {
+        const float away = thing.at_infinity ? 1 : (thing.centre - pose.origin).length();
+        return thing.is_lamp() && thing.reach_m > 0 && thing.reach_m < kMostWide * away &&
+               shines_in(thing, pose, bvh);
+    });
+    return out;
+}
+
+}  // namespace
 
 std::string DiffractionEffect::text() const {
     if (!has_iris) return "this camera has no iris, so that nothing is known of its diffraction";
@@ -22,10 +41,8 @@ DiffractionEffect diffraction_effect(const View& view, V2i frame_px,
                                      std::span<const SmallFeature> things, const Bvh& bvh) {
     const auto camera = stop_camera(view.still);
     if (!camera) return {};
-    const bool lamp = std::ranges::any_of(things, [&](const SmallFeature& thing) {
-        return thing.is_lamp() && shines_in(thing, pose_of(*camera), bvh);
-    });
-    return {true, finest_contrast(*camera, frame_px), lamp};
+    return {true, finest_contrast(*camera, frame_px),
+            !star_lamps(things, pose_of(*camera), bvh).empty()};
 }
 
 std::shared_ptr<const Camera> with_diffraction(const SceneRequest& asked, const View& view,
@@ -34,12 +51,9 @@ std::shared_ptr<const Camera> with_diffraction(const SceneRequest& asked, const 
     if (asked.camera.diffraction == DiffractionUse::Off) return view.camera;
     if (!diffraction_effect(view, asked.size, things, bvh).matters()) return view.camera;
     const StopCamera camera = *stop_camera(view.still);
-    std::vector<SmallFeature> lamps;
-    std::ranges::copy_if(things, std::back_inserter(lamps), [&](const SmallFeature& thing) {
-        return thing.is_lamp() && shines_in(thing, pose_of(camera), bvh);
-    });
     FilmSpread spread(camera);
-    LampImages images(*target_camera(view.still), asked.size, lamps, spread);
+    LampImages images(*target_camera(view.still), asked.size,
+                      star_lamps(things, pose_of(camera), bvh), spread);
     return std::make_shared<DiffractionCamera>(view.camera, std::move(spread), std::move(images));
 }
 

@@ -47,7 +47,6 @@ LampImages::LampImages(const TargetCamera& aims, V2i frame_px,
             std::shared_ptr<const StopMap> map;
             bool tried = false;
             for (size_t n = 0; n < features.size(); ++n) {
-                if (!features[n].is_lamp() || !(features[n].reach_m > 0)) continue;
                 if (!passes(bundle, features[n], kMargin)) continue;
                 if (!tried) map = aims.map(cell), tried = true;
                 if (!map) break;

@@ -19,8 +19,8 @@ class LampImages {
     static constexpr size_t kMost = 16;
 
     LampImages() = default;
-    /// Images of the brightest lamps, up to half a frame beyond the edges. aims: whose targets the
-    /// lamps may be; nothing is cast into the scene.
+    /// Images of the brightest of some small lamps, up to half a frame beyond the edges. aims:
+    /// whose targets the lamps may be; nothing is cast into the scene.
     LampImages(const TargetCamera& aims, V2i frame_px, std::span<const SmallFeature>,
                const FilmSpread&);
 

@@ -90,8 +90,9 @@ TEST(DiffractionCamera, KeepsTheLightOfAnEvenScene) {
                 for (const CameraPath& path : camera.sample(at, bands))
                     spread += path.weight * path.mis_weight;
             }
-            // Lanes share rays, and so their light; each by itself is less sure.
-            EXPECT_NEAR(hsum(spread) / hsum(plain), 1, 1e-3f) << film;
+            // Some of what is aimed beyond the reach of a lens would have come here. Lanes share
+            // rays, and so their light; each by itself is less sure.
+            EXPECT_NEAR(hsum(spread) / hsum(plain), 1, 2e-3f) << film;
             for (int lane = 0; lane < 4; ++lane)
                 EXPECT_NEAR(spread[lane] / plain[lane], 1, 5e-3f) << film << lane;
         }

@@ -74,6 +74,7 @@ VALUES = {
     "dispersion": ("hero", ["--method", "dispersion=hero"], {"lens": "singlet:N-BK7", **THIN}),
     "coating": ("mgf2", ["--method", "coating=mgf2"], GLASS),
     "ghosts": ("off", ["--ghosts", "off"], GLASS),
+    "diffraction": ("auto", ["--diffraction", "auto"], THIN),
     "lens_precision": ("double", ["--method", "lens-precision=double"], GLASS),
     "exposure_mode": ("photographic", ["--exposure-mode", "photographic"], THIN),
     "natural_vignetting": ("off", ["--method", "natural-vignetting=off"], PHOTOGRAPHIC),

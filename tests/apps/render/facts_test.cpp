@@ -86,6 +86,7 @@ const std::map<std::string, Change> kChanges{
     {"dispersion", {"hero", kSinglet}},
     {"coating", {"mgf2", kGlass}},
     {"ghosts", {"off", kGlass}},
+    {"diffraction", {"auto", kThin}},
     {"lens-precision", {"double", kGlass}},
     {"exposure-mode", {"photographic", kThin}},
     {"natural-vignetting", {"off", kPhotographic}},

@@ -76,6 +76,7 @@ const std::map<std::string, std::pair<std::string, std::string>> kTexts{
     {"dispersion", {"hero", "hero"}},
     {"coating", {"mgf2", "mgf2"}},
     {"ghosts", {"only", "only"}},
+    {"diffraction", {"auto", "auto"}},
     {"lens-precision", {"double", "double"}},
     {"exposure-mode", {"photographic", "photographic"}},
     {"natural-vignetting", {"off", "off"}},

@@ -109,8 +109,10 @@ void print_by_rms(const std::vector<RaysAndPattern>& waves) {
         const std::string range = std::isinf(kRms[i + 1])
                                       ? fmt::format("above {:g}", kRms[i])
                                       : fmt::format("{:g} to {:g}", kRms[i], kRms[i + 1]);
-        fmt::print("| {} | {} | {:.2g} | {} | {} | {} |\n", range, here.size(),
-                   blurs[blurs.size() / 2], spread_of(here, &RaysAndPattern::contrast_error),
+        const double blur = blurs[blurs.size() / 2];
+        fmt::print("| {} | {} | {} | {} | {} | {} |\n", range, here.size(),
+                   blur < 100 ? fmt::format("{:.2g}", blur) : fmt::format("{:.0f}", blur),
+                   spread_of(here, &RaysAndPattern::contrast_error),
                    spread_of(here, &RaysAndPattern::error_of_pattern),
                    spread_of(here, &RaysAndPattern::error_of_rays));
     }

@@ -33,8 +33,9 @@ struct RaysAndPattern {
 /// wavelengths times f-number: a rule of thumb. docs/measured/waves.md says where it fails.
 [[nodiscard]] bool sharp_or_wide(double rms_waves, double blur);
 
-/// The contrast of a point's image in both sections, up to a frequency: bundles of that point, one
-/// for each wavelength, with weights that add up to 1, on a film. Of an iris, rays pass where it
+/// Errors of a point's image on a film, in both sections, up to a frequency above 0. Bundles: of
+/// that point, one for each wavelength, with weights that add up to 1. At least one frequency is
+/// looked at, 7 cycles per mm at f/1, 0.8 at f/8; at most 20. Of an iris, rays pass where it
 /// transmits half. Differences below 0.01 are partly those of rays' and cells' finite numbers.
 /// Nothing where a bundle sends no light, or parallel rays.
 [[nodiscard]] std::optional<RaysAndPattern> rays_and_pattern(std::span<const AimedBundle>,
@@ -53,8 +54,9 @@ struct DiffractionLimits {
 struct WeighedWavelength {
     double nm, weight;  ///< weights add up to 1
 };
-/// The worst of fields that send light to a film; distance_mm: of the object, as ObjectPoint has
-/// it. Nothing where none does.
+/// The worst of fields, degrees from the axis towards +y, that send light to a film; distance_mm:
+/// of the object, as ObjectPoint has it. Nothing where none does. Some 0.1 s of CPU time for a
+/// field of three wavelengths.
 [[nodiscard]] std::optional<DiffractionLimits> diffraction_limits(
     const Lens&, double film_mm, double distance_mm, std::span<const double> fields_deg,
     std::span<const WeighedWavelength>, double most_cycles_per_mm,

@@ -12,6 +12,7 @@
 #include "tests/camera/waves/stigmatic_lens.h"
 #include "tests/camera/waves/wave.h"
 #include "tests/support/lens_json.h"
+#include "tests/support/nasty_lens.h"
 
 namespace petzval {
 namespace {
@@ -278,6 +279,32 @@ TEST(RaysAndPattern, FrequenciesFarTooLowAndTooHigh) {
     const Lens lens(test::read_lens("takumar-50mm-f1.2"));
     EXPECT_LT(on_axis(lens, 0, 0.01).cycles_per_mm, 10);
     EXPECT_LT(on_axis(lens, 0, 1e9).cycles_per_mm, 2000);
+}
+
+TEST(RaysAndPattern, NastyLensesHaveFiniteErrorsOrNone) {
+    test::Random random(7);
+    int told = 0;
+    for (int i = 0; i < 40; ++i) {
+        std::optional<Lens> lens;
+        try {
+            lens.emplace(i % 2 ? test::nasty_prescription(random, i % 4 == 1)
+                               : test::random_prescription(random));
+        } catch (const std::invalid_argument&) {
+            continue;
+        }
+        const WeighedWavelength light[] = {{100, 0.4}, {kLineD_nm, 0.5}, {20000, 0.1}};
+        const double fields_deg[] = {0, test::between(random, 0, 100)};
+        const auto found = diffraction_limits(*lens, lens->film_mm(), i % 5 ? INFINITY : 700,
+                                              fields_deg, light, i % 3 ? 100 : 2);
+        if (!found) continue;
+        ++told;
+        // Cells at rims are counted by shares, so that all of the light may be a little more.
+        ASSERT_LE(found->worst.contrast_error, 1.01) << i;
+        ASSERT_GE(found->worst.contrast_error, 0) << i;
+        ASSERT_TRUE(std::isfinite(found->worst.rms_waves)) << i;
+        ASSERT_TRUE(std::isfinite(found->worst.blur)) << i;
+    }
+    EXPECT_GT(told, 8);
 }
 
 TEST(RaysAndPattern, LimitsAreThoseOfTheWorstField) {

@@ -66,10 +66,11 @@ template ReferenceRay<Dual<d4>> meet_reference(const AimedBundle&, const Referen
 
 ReferenceSphere reference_sphere(const AimedBundle& bundle, double film_mm,
                                  std::array<double, 2> image_mm) {
-    constexpr int side = 16;
+    constexpr int side = 32;
     ReferenceSphere out{.film_mm = film_mm, .image_mm = image_mm, .index = bundle.film_index()};
+    // Rays beyond the rims may land anywhere, and some wavelengths have more of them.
     double reach_mm = 0;
-    for (const BundleRay& ray : bundle.trace(bundle.grid(side), film_mm, Clip::No))
+    for (const BundleRay& ray : bundle.trace(bundle.grid(side), film_mm))
         reach_mm = std::max(reach_mm,
                             std::hypot(ray.film_mm[0] - image_mm[0], ray.film_mm[1] - image_mm[1]));
     out.curvature_1_mm = curvature_of(bundle, film_mm, image_mm, reach_mm);

@@ -33,6 +33,53 @@ double sum_of_shares(const PointSpread& spread) {
     return sum;
 }
 
+// Area of direction cosines that rays of a bundle cover, from a sphere about the image point
+// through the middle of the paraxial exit pupil: the sum over a fine net of those that pass.
+double area_of_directions(const AimedBundle& bundle, double film_mm,
+                          const std::array<double, 2>& image_mm) {
+    constexpr int side = 400;
+    const Lens& lens = bundle.lens();
+    const double exit_mm =
+        lens.vertex_mm(lens.last()) + first_order(lens, bundle.nm()).exit_pupil_mm;
+    const double radius_mm = std::hypot(image_mm[0], image_mm[1], film_mm - exit_mm);
+    const auto cosines = [&](const BundleRay& ray) {
+        const V3d way = V3d(ray.slope[0], ray.slope[1], 1).normalized();
+        const V3d film(ray.film_mm[0] - image_mm[0], ray.film_mm[1] - image_mm[1], 0);
+        const double along = film.dot(way);
+        const double back =
+            along + std::sqrt(radius_mm * radius_mm - film.dot(film) + along * along);
+        const V3d from = film - back * way;
+        return std::array{-from.x / radius_mm, -from.y / radius_mm};
+    };
+    const double width = (bundle.most()[0] - bundle.least()[0]) / side,
+                 height = (bundle.most()[1] - bundle.least()[1]) / side;
+    double area = 0;
+    for (const BundleRay& ray : bundle.trace(bundle.grid(side), film_mm)) {
+        const PupilPoint at = ray.pupil_point, right{at[0] + width, at[1]},
+                         above{at[0], at[1] + height};
+        const auto next = bundle.trace(std::array{right, above}, film_mm, Clip::No);
+        if (next.size() < 2) continue;
+        const auto here = cosines(ray), by_s = cosines(next[0]), by_t = cosines(next[1]);
+        area += std::fabs((by_s[0] - here[0]) * (by_t[1] - here[1]) -
+                          (by_s[1] - here[1]) * (by_t[0] - here[0]));
+    }
+    return area;
+}
+
+// The Biotar's rays beyond its rims land far away, and more of them at some wavelengths.
+TEST(WaveLimits, AnFnumberIsThatOfTheRaysThatPass) {
+    const Lens lens(test::read_any_lens("biotar-58mm-f1.4"));
+    for (const double field_deg : {0., 14.35})
+        for (const double nm : {435., 500., 540., 587.5618, 656.}) {
+            const auto wave = wave_of(lens, {field_deg}, 0, kFiguresPupilSide, nm);
+            const double area =
+                area_of_directions(wave.bundle, lens.film_mm(), wave.pupil.sphere.image_mm);
+            const double fnumber = 0.5 / std::sqrt(area / std::numbers::pi);
+            EXPECT_NEAR(wavefront_figures(wave.pupil).fnumber, fnumber, 0.002 * fnumber)
+                << field_deg << " " << nm;
+        }
+}
+
 // A hole of a micrometre is a pinhole camera: Airy's disc of its f-number, whatever the lens.
 TEST(WaveLimits, AnIrisOfAMicrometre) {
     const Lens lens(with_stop_mm(read_lens("takumar-50mm-f1.2"), 5e-4));

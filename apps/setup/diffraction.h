@@ -3,11 +3,10 @@
 #pragma once
 
 #include <memory>
-#include <span>
+#include <optional>
 #include <string>
 
 #include "apps/setup/render_setup.h"
-#include "core/light/small_features.h"
 
 namespace petzval {
 
@@ -23,13 +22,17 @@ struct DiffractionEffect {
     /// Reason in words.
     [[nodiscard]] std::string text() const;
 };
-[[nodiscard]] DiffractionEffect diffraction_effect(const View&, V2i frame_px,
-                                                   std::span<const SmallFeature>, const Bvh&);
+[[nodiscard]] DiffractionEffect diffraction_effect(const View&, V2i frame_px, const Scene&,
+                                                   const Bvh&);
 
-/// The camera of a view, spread by diffraction where that was asked for and matters. things: the
-/// small lamps of the scene and their reflections.
+/// Remark on what is wrong where a traced lens errs by too much for rays and pattern to be told
+/// apart, in words; nothing where that is below a hundredth of contrast. focus_m: distance from the
+/// entrance pupil of what is sharp. Up to a second of CPU time.
+[[nodiscard]] std::optional<std::string> diffraction_doubt(const View&, V2i frame_px,
+                                                           double focus_m);
+
+/// The camera of a view, spread by diffraction where that was asked for and matters.
 [[nodiscard]] std::shared_ptr<const Camera> with_diffraction(const SceneRequest&, const View&,
-                                                             std::span<const SmallFeature> things,
-                                                             const Bvh&);
+                                                             const Scene&, const Bvh&);
 
 }  // namespace petzval

@@ -246,11 +246,7 @@ std::vector<SmallFeature> compose_camera(const SceneRequest& asked, const Render
             aims->set_targets(view.targets);
             if (view.targets) view.camera = std::move(aims);
         }
-    if (asked.camera.diffraction == DiffractionUse::Auto)
-        view.camera = with_diffraction(
-            asked, view,
-            features.empty() ? small_features_of(*prepared.scene, kMostTargets) : features,
-            *prepared.bvh);
+    view.camera = with_diffraction(asked, view, *prepared.scene, *prepared.bvh);
     view.camera = with_ghosts(asked.camera, view, *prepared.scene, *prepared.bvh);
     next_step();
     view.camera = moved(std::move(view.camera), view);
@@ -318,6 +314,10 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     next_step();
     const std::vector<SmallFeature> lamps =
         compose_camera(request, shares ? like : nullptr, prepared, setup.view, next_step);
+    if (!shares && request.camera.diffraction == DiffractionUse::Auto)
+        if (const auto doubt =
+                diffraction_doubt(setup.view, request.size, double(camera.report.focus_m)))
+            notice(*doubt);
     if (!shares)
         if (const auto remark = ghost_remark(request.camera, setup.view, lamps, *prepared.bvh))
             notice(*remark);

@@ -41,8 +41,8 @@ auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const
     const float rest = std::min(of_lane - float(left), kOneMinus);
     while (!bands.on[drawn] || left-- > 0) ++drawn;
     const V2f v = here.pattern->draw(rest, at.sampler.get2(Dim::Diffraction));
-    LampImages::Choice choice;
-    if (!lamps_.empty()) choice = lamps_.choice(at.film);
+    static constexpr LampImages::Choice kNone;
+    const LampImages::Choice& choice = lamps_.empty() ? kNone : lamps_.choice(at.film);
     const auto densities = [&](const SpreadHere& spread, V2f by) {
         f4 of_lanes{};
         for (int i = 0; i < 4; ++i)

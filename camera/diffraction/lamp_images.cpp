@@ -21,11 +21,25 @@ constexpr float kMargin = 0.5f;
 /// Share of the frame's film points whose stars are so bright that every second sample looks for
 /// them, at least.
 constexpr float kBright = 0.1f;
-constexpr uint32_t kTried = 1024;
+/// Cells of choices: their size, how many there may be across, and points tried in each.
+constexpr int kCell_px = 4, kMostChoices = 256;
+constexpr uint32_t kTried = 3;
+
+/// Ratio of luminances up to which things that overlap are parts of one lamp.
+constexpr double kAlike = 3;
 
 Target target_of(const SmallFeature& lamp) {
     return {lamp.centre, lamp.at_infinity ? std::tan(lamp.reach_m) : lamp.reach_m,
             lamp.at_infinity};
+}
+
+bool overlap(const FilmCell& a, const FilmCell& b) {
+    return a.first.x < b.last.x && b.first.x < a.last.x && a.first.y < b.last.y &&
+           b.first.y < a.last.y;
+}
+FilmCell around(const FilmCell& a, const FilmCell& b) {
+    return {{std::min(a.first.x, b.first.x), std::min(a.first.y, b.first.y)},
+            {std::max(a.last.x, b.last.x), std::max(a.last.y, b.last.y)}};
 }
 
 }  // namespace
@@ -34,8 +48,8 @@ LampImages::LampImages(const TargetCamera& aims, V2i frame_px,
                        std::span<const SmallFeature> features, const FilmSpread& spread) {
     struct Found {
         FilmCell at;
-        double met = 0;  ///< share of rays, by area of the film
-        double light = 0;
+        double light = 0;  ///< share of rays that meet it, by area of the film, and its luminance
+        double nits = 0;
     };
     std::vector<Found> found(features.size());
     for (int j = -kBeyond; j < kCells + kBeyond; ++j)
@@ -58,17 +72,26 @@ LampImages::LampImages(const TargetCamera& aims, V2i frame_px,
                 const FilmCell part = octagon.within(cell);
                 if (!(part.area() > 0)) continue;
                 Found& f = found[n];
-                if (f.met == 0) f.at = part;
-                f.at.first = {std::min(f.at.first.x, part.first.x),
-                              std::min(f.at.first.y, part.first.y)};
-                f.at.last = {std::max(f.at.last.x, part.last.x),
-                             std::max(f.at.last.y, part.last.y)};
-                f.met += double(seen->met) * double(part.area());
-                f.light = f.met * features[n].radiance;
+                f.nits = features[n].radiance;
+                f.at = f.light > 0 ? around(f.at, part) : part;
+                f.light += double(seen->met) * double(part.area()) * f.nits;
             }
         }
     std::ranges::stable_sort(found,
                              [](const Found& a, const Found& b) { return a.light > b.light; });
+    // Parts of one lamp have one star.
+    for (size_t n = 0; n < found.size(); ++n)
+        for (size_t m = n + 1; m < found.size();)
+            if (found[m].light > 0 && overlap(found[n].at, found[m].at) &&
+                std::max(found[n].nits, found[m].nits) <
+                    kAlike * std::min(found[n].nits, found[m].nits)) {
+                found[n].at = around(found[n].at, found[m].at);
+                found[n].light += found[m].light;
+                found.erase(found.begin() + ptrdiff_t(m));
+                m = n + 1;
+            } else {
+                ++m;
+            }
     // Corners of a box that are no lamp's are left to the pattern's own draws.
     constexpr float wider = 1.1f;
     for (const Found& f : found) {
@@ -86,20 +109,28 @@ LampImages::LampImages(const TargetCamera& aims, V2i frame_px,
                              image.spread.frequency({0, image.half.y}, kMiddle_nm).length());
         images_.push_back(image);
     }
-    if (images_.empty()) return;
-    std::vector<float> lights_of;
-    for (uint32_t i = 0; i < kTried; ++i) {
-        const V2f film = Sampler(SamplerKind::Owen, 0, {0, 0, i}).get2(Dim::Film);
-        lights_of.push_back(lights(film).sum);
-    }
-    const auto usual = lights_of.begin() + ptrdiff_t((1 - kBright) * float(lights_of.size() - 1));
-    std::ranges::nth_element(lights_of, usual);
-    usual_ = *usual;
+    if (!images_.empty()) find_choices(frame_px);
 }
 
-auto LampImages::lights(V2f film) const -> Choice {
+void LampImages::find_choices(V2i frame_px) {
+    const auto cells = [](int px) { return std::clamp(px / kCell_px, 1, kMostChoices); };
+    cells_ = {cells(frame_px.x), cells(frame_px.y)};
+    choices_.resize(size_t(cells_.x) * size_t(cells_.y));
+    for (size_t k = 0; k < choices_.size(); ++k)
+        for (uint32_t i = 0; i < kTried; ++i) {
+            const V2f in_cell = Sampler(SamplerKind::Owen, 0, {0, int(k), i}).get2(Dim::Film);
+            const V2f cell(float(k % size_t(cells_.x)), float(k / size_t(cells_.x)));
+            add_lights((cell + in_cell) / V2f(cells_), choices_[k]);
+        }
+    std::vector<float> sums;
+    for (const Choice& c : choices_) sums.push_back(c.sum);
+    const auto bright = sums.begin() + ptrdiff_t((1 - kBright) * float(sums.size() - 1));
+    std::ranges::nth_element(sums, bright);
+    for (Choice& c : choices_) c.chance = c.sum > 0 ? c.sum / (c.sum + *bright) : 0;
+}
+
+void LampImages::add_lights(V2f film, Choice& out) const {
     constexpr int points = 3;
-    Choice out;
     for (size_t i = 0; i < images_.size(); ++i) {
         const Image& image = images_[i];
         const DiffractionPattern& pattern = *image.spread.pattern;
@@ -115,16 +146,10 @@ auto LampImages::lights(V2f film) const -> Choice {
             }
             share *= 4 * image.half.x * image.half.y / (points * points);
         }
-        out.light[i] = std::isfinite(share) ? image.light * share : 0;
-        out.sum += out.light[i];
+        if (!std::isfinite(share)) continue;
+        out.light[i] += image.light * share;
+        out.sum += image.light * share;
     }
-    return out;
-}
-
-auto LampImages::choice(V2f film) const -> Choice {
-    Choice out = lights(film);
-    out.chance = out.sum > 0 ? out.sum / (out.sum + usual_) : 0;
-    return out;
 }
 
 V2f LampImages::draw(const Choice& choice, V2f film, float pick, V2f u) const {
@@ -146,6 +171,11 @@ float LampImages::density(const Choice& choice, V2f film, V2f displacement) cons
     for (size_t i = 0; i < images_.size(); ++i) {
         const Image& image = images_[i];
         const FarPattern& far = image.spread.pattern->far();
+        // A disc is wider than its image by little.
+        constexpr float beside = 4;
+        const V2f to = film + displacement - image.middle;
+        if (std::fabs(to.x) > beside * image.half.x && std::fabs(to.y) > beside * image.half.y)
+            continue;
         const V2f middle = image.frequency_from(film);
         if (StarAim::can(far, middle, image.disc_radius)) {
             const V2f v = image.spread.frequency(displacement, kMiddle_nm);
@@ -153,8 +183,7 @@ float LampImages::density(const Choice& choice, V2f film, V2f displacement) cons
             sum += choice.light[i] * StarAim(far, middle, image.disc_radius).density(v) /
                    image.spread.area(kMiddle_nm);
         } else {
-            const V2f off = film + displacement - image.middle;
-            if (std::fabs(off.x) <= image.half.x && std::fabs(off.y) <= image.half.y)
+            if (std::fabs(to.x) <= image.half.x && std::fabs(to.y) <= image.half.y)
                 sum += choice.light[i] / (4 * image.half.x * image.half.y);
         }
     }

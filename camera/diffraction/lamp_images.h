@@ -2,6 +2,7 @@
 // Images of lamps on the film and around it, from which the spikes of stars come.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -25,13 +26,18 @@ class LampImages {
                const FilmSpread&);
 
     [[nodiscard]] bool empty() const { return images_.empty(); }
-    /// What lamps bring to a film point, about.
+    /// What lamps bring to film points of a part of the frame, about.
     struct Choice {
         std::array<float, kMost> light{};
         float sum = 0;
         float chance = 0;  ///< that a sample looks for one of them
     };
-    [[nodiscard]] Choice choice(V2f film) const;
+    [[nodiscard]] const Choice& choice(V2f film) const {
+        const auto cell = [](float place, int count) {
+            return std::clamp(int(place * float(count)), 0, count - 1);
+        };
+        return choices_[size_t(cell(film.y, cells_.y) * cells_.x + cell(film.x, cells_.x))];
+    }
     /// Displacement of a film point into the image of a lamp; pick in [0, chance).
     [[nodiscard]] V2f draw(const Choice&, V2f film, float pick, V2f u) const;
     /// Density of draw(), the chance included, by area of the film.
@@ -48,10 +54,12 @@ class LampImages {
             return spread.frequency(middle - film, kMiddle_nm);
         }
     };
-    [[nodiscard]] Choice lights(V2f film) const;
+    void find_choices(V2i frame_px);
+    void add_lights(V2f film, Choice&) const;
 
     std::vector<Image> images_;
-    float usual_ = 0;  ///< light of a film point that every second sample looks for
+    V2i cells_{0, 0};
+    std::vector<Choice> choices_;  ///< of cells of the frame, row by row
 };
 
 }  // namespace petzval

@@ -53,36 +53,51 @@ def toward_sun(right_deg, up_deg):
     return [-y / across * math.sin(half), x / across * math.sin(half), 0, math.cos(half)]
 
 
-def main(path, right_deg=SUN_DEG[0], up_deg=SUN_DEG[1]):
+def write_glb(path, parts_of_scene, more_nodes, yfov, lights=None, generator="make/low_sun.py"):
+    """Writes a file of parts (name, material, triangles) and further nodes; its camera is number 0."""
     data = b""
     views, accessors, materials, parts, nodes = [], [], [], [], []
-    for name, colour, triangles in meshes():
+    for name, material, triangles in parts_of_scene:
         chunk = b"".join(struct.pack("<3f", *corner) for corner in triangles)
         views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(chunk)})
         data += chunk
         accessors.append({"bufferView": len(views) - 1, "componentType": 5126, "count": len(triangles), "type": "VEC3",
                           "min": [min(c[k] for c in triangles) for k in range(3)],
                           "max": [max(c[k] for c in triangles) for k in range(3)]})
-        materials.append({"name": name, "pbrMetallicRoughness": {"baseColorFactor": [*colour, 1], "metallicFactor": 0,
-                                                                 "roughnessFactor": 0.9}})
+        materials.append({"name": name, **material})
         parts.append({"name": name, "primitives": [{"attributes": {"POSITION": len(accessors) - 1},
                                                     "material": len(materials) - 1}]})
         nodes.append({"name": name, "mesh": len(parts) - 1})
-    nodes.append({"name": "front", "camera": 0, "translation": [0, 1.5, 0]})
-    nodes.append({"name": "sun", "rotation": toward_sun(float(right_deg), float(up_deg)), "extensions": {"KHR_lights_punctual": {"light": 0}}})
-    sun = {"name": "sun", "type": "directional", "color": [1, 0.82, 0.6], "intensity": 60000,
-           "extras": {"petzval": {"angle_deg": 0.53}}}
-    gltf = {"asset": {"version": "2.0", "generator": "make/low_sun.py"}, "scene": 0,
+    nodes += more_nodes
+    gltf = {"asset": {"version": "2.0", "generator": generator}, "scene": 0,
             "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes, "meshes": parts, "materials": materials,
             "accessors": accessors, "bufferViews": views, "buffers": [{"byteLength": len(data)}],
-            "cameras": [{"name": "front", "type": "perspective", "perspective": {"yfov": 0.47, "znear": 0.1}}],
-            "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [sun]}}}
+            "cameras": [{"name": "front", "type": "perspective", "perspective": {"yfov": yfov, "znear": 0.1}}]}
+    used = sorted({name for m in materials for name in m.get("extensions", {})}) + (["KHR_lights_punctual"] if lights else [])
+    if used:
+        gltf["extensionsUsed"] = used
+    if lights:
+        gltf["extensions"] = {"KHR_lights_punctual": {"lights": lights}}
     text = json.dumps(gltf, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     data += b"\0" * (-len(data) % 4)
     with open(path, "wb") as out:
         out.write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data)))
         out.write(struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data)
+
+
+def dull(colour, roughness=0.9):
+    """Material that reflects a colour."""
+    return {"pbrMetallicRoughness": {"baseColorFactor": [*colour, 1], "metallicFactor": 0, "roughnessFactor": roughness}}
+
+
+def main(path, right_deg=SUN_DEG[0], up_deg=SUN_DEG[1]):
+    sun = {"name": "sun", "type": "directional", "color": [1, 0.82, 0.6], "intensity": 60000,
+           "extras": {"petzval": {"angle_deg": 0.53}}}
+    write_glb(path, [(name, dull(colour), triangles) for name, colour, triangles in meshes()],
+              [{"name": "front", "camera": 0, "translation": [0, 1.5, 0]},
+               {"name": "sun", "rotation": toward_sun(float(right_deg), float(up_deg)),
+                "extensions": {"KHR_lights_punctual": {"light": 0}}}], 0.47, [sun])
 
 
 if __name__ == "__main__":

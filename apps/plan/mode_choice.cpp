@@ -22,7 +22,7 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
                        TbbExecutor& executor) {
     ModeChoice out{0, {}, resolved_request(first)};
     out.scene.spectral.mode = SpectralMode::Wavelengths;
-    // Ghosts take part in each way alike, and would be searched for each.
+    // Ghosts take part in each way alike, and take time.
     const GhostUse ghosts = std::exchange(out.scene.camera.ghosts, GhostUse::Off);
     const auto with = [&](DispersionMode mode) {
         out.scene.camera.dispersion = mode;

@@ -26,6 +26,7 @@ std::optional<PrecisionFound> find_precision(const PlanRequest& request, const R
     SceneRequest floats = chosen, doubles = chosen;
     // One ray for all wavelengths: what they are apart is no matter of precision.
     floats.camera.dispersion = doubles.camera.dispersion = DispersionMode::Shared;
+    floats.camera.ghosts = doubles.camera.ghosts = GhostUse::Off;
     doubles.camera.precision = Precision::Double;
     const RenderSetup in_float = view_of(first, floats, executor),
                       in_double = view_of(first, doubles, executor);

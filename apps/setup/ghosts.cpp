@@ -2,6 +2,7 @@
 #include "apps/setup/ghosts.h"
 
 #include "camera/ghosts/ghost_camera.h"
+#include "integrator/render/executor.h"
 #include "io/base/error.h"
 
 namespace petzval {
@@ -25,29 +26,41 @@ bool shines_in(const SmallFeature& lamp, const Pose& pose, const Bvh& bvh) {
     return !bvh.intersect(ray);
 }
 
+std::shared_ptr<const GhostDraws> ghost_draws(const GhostOptics& optics,
+                                              const PreparedScene& prepared,
+                                              const std::function<void()>& next_step) {
+    // A lamp that is hidden from the lens, or behind it, may show a part: it comes last.
+    constexpr double kHidden = 0.01;
+    std::vector<SmallFeature> things = small_features_of(*prepared.scene);
+    for (SmallFeature& thing : things)
+        if (!shines_in(thing, optics.camera().pose(), *prepared.bvh)) thing.radiance *= kHidden;
+    const auto run = [&](size_t count, const std::function<void(size_t)>& task) {
+        next_step();
+        run_here(count, task);
+    };
+    return std::make_shared<const GhostDraws>(optics, GhostRegions(optics, things, run), run);
+}
+
 }  // namespace
 
-std::shared_ptr<const Camera> with_ghosts(const CameraRequest& asked, const View& view,
-                                          const Scene& scene, const Bvh& bvh) {
+void add_ghosts(const CameraRequest& asked, const RenderSetup* like, const PreparedScene& prepared,
+                const std::function<void()>& next_step, View& view) {
     const auto lens = traced_lens(view);
     const bool only = asked.ghosts == GhostUse::Only;
-    if (!lens || asked.ghosts == GhostUse::Off) return view.camera;
-    if (asked.coating == Coating::Ideal && !only) return view.camera;
+    if (!lens || asked.ghosts == GhostUse::Off) return;
+    if (asked.coating == Coating::Ideal && !only) return;
     GhostOptics optics(lens);
     if (optics.pairs().empty()) {
-        if (!only) return view.camera;
+        if (!only) return;
         throw ArgumentError("⟨ghosts⟩ only", "",
                             "shows light that two surfaces of the lens reflect, and here none "
                             "do: give ⟨coating⟩ year or another, and a lens of more surfaces");
     }
-    // A lamp that is hidden from the lens, or behind it, may show a part: it comes last.
-    constexpr double kHidden = 0.01;
-    std::vector<SmallFeature> things = small_features_of(scene);
-    for (SmallFeature& thing : things)
-        if (!shines_in(thing, lens->pose(), bvh)) thing.radiance *= kHidden;
-    GhostRegions regions(optics, things);
-    return std::make_shared<GhostCamera>(only ? nullptr : view.camera, std::move(optics),
-                                         std::move(regions));
+    const bool same = like && like->view.ghosts && like->prepared.bvh == prepared.bvh &&
+                      like->view.ghosts->are_of(optics);
+    view.ghosts = same ? like->view.ghosts : ghost_draws(optics, prepared, next_step);
+    view.camera = std::make_shared<GhostCamera>(only ? nullptr : std::move(view.camera),
+                                                std::move(optics), view.ghosts);
 }
 
 std::optional<std::string> ghost_remark(const CameraRequest& asked, const View& view,

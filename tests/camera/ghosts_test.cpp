@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <thread>
+#include <tuple>
+
+#include "camera/ghosts/ghost_search.h"
 #include "tests/measure/ghost_light.h"
 
 namespace petzval {
@@ -80,14 +84,72 @@ TEST(GhostCamera, OfALampKeepTheirMeanWithRegionsAndWithout) {
     const GhostOptics optics(camera);
     GhostRegions regions(optics, {&sun, 1});
     ASSERT_TRUE(regions.serve(V2f(0.f)));
-    const Sums with = light_of(GhostCamera(nullptr, optics, std::move(regions)), sun, kCount),
-               without = light_of(GhostCamera(nullptr, optics, {}), sun, kCount);
+    const auto draws = [&](GhostRegions of) {
+        return std::make_shared<const GhostDraws>(optics, std::move(of));
+    };
+    const Sums with =
+                   light_of(GhostCamera(nullptr, optics, draws(std::move(regions))), sun, kCount),
+               without = light_of(GhostCamera(nullptr, optics, draws({})), sun, kCount);
     const double error = std::sqrt(with.variance(kCount) + without.variance(kCount));
     EXPECT_LT(error, 0.08 * without.sum);
     EXPECT_NEAR(with.sum, without.sum, 4 * error);
     EXPECT_LT(with.variance(kCount) * 4, without.variance(kCount))
         << with.sum << " " << without.sum << " " << with.variance(kCount) << " "
         << without.variance(kCount);
+}
+
+// So pairs are searched side by side, and a pair anew only where the parts ended within it.
+TEST(GhostSearch, FindsTheSameForAnyNumberOfPartsThatItDoesNotUseUp) {
+    const GhostOptics optics(ghostly("takumar-50mm-f1.2", Coating::Uncoated));
+    const GhostSearch search(optics);
+    const GhostLamp lamp{{0, std::sin(0.2), -std::cos(0.2)}, 0.005, true, 1};
+    const auto rears = [&](uint32_t pair, int most_parts) {
+        const GhostSearch::Found found = search.find(pair, lamp, most_parts);
+        std::vector<std::tuple<float, float, float>> out;
+        for (const GhostRegion& r : found.regions) out.emplace_back(r.rear.x, r.rear.y, r.light);
+        return std::pair(found.parts, out);
+    };
+    int ended_soon = 0;
+    for (uint32_t pair = 0; pair < optics.pairs().size(); ++pair) {
+        const auto all = rears(pair, 1 << 30), with_one_left = rears(pair, all.first + 1),
+                   half = rears(pair, all.first / 2);
+        EXPECT_EQ(all, with_one_left);
+        EXPECT_LE(half.first, all.first);
+        ended_soon += half != all;
+    }
+    EXPECT_GT(ended_soon, 10);
+}
+
+TEST(GhostRegions, AreTheSameWhateverRunsTheSearch) {
+    const auto camera = ghostly("double-gauss-100mm-f2", Coating::MgF2);
+    const GhostOptics optics(camera);
+    std::vector<SmallFeature> suns;
+    for (const double deg : {3, 8, 14}) suns.push_back(sun_at(deg, 0.005f));
+    const auto backwards = [](size_t count, const std::function<void(size_t)>& task) {
+        std::vector<std::jthread> threads;
+        for (const size_t parity : {0, 1})
+            threads.emplace_back([&, parity] {
+                for (size_t i = count; i-- > 0;)
+                    if (i % 2 == parity) task(i);
+            });
+    };
+    const GhostDraws one(optics, GhostRegions(optics, suns)),
+        other(optics, GhostRegions(optics, suns, backwards), backwards);
+    int drawn = 0;
+    for (uint32_t i = 0; i < 4000; ++i) {
+        const Sampler sampler(SamplerKind::Owen, 6, {0, 0, i});
+        const V2f film = camera->film_mm(sampler.get2(Dim::Film));
+        const auto a = one.draw(film, 0, sampler), b = other.draw(film, 0, sampler);
+        ASSERT_EQ(a.through_region.has_value(), b.through_region.has_value());
+        if (!a.through_region) continue;
+        ++drawn;
+        constexpr float kLineD = 0;
+        ASSERT_EQ(a.through_region->pair, b.through_region->pair);
+        ASSERT_EQ(a.through_region->rear_mm, b.through_region->rear_mm);
+        ASSERT_EQ(one.density(film, {&kLineD, 1}, *a.through_region),
+                  other.density(film, {&kLineD, 1}, *b.through_region));
+    }
+    EXPECT_GT(drawn, 500);
 }
 
 /// Height and angle, in the medium, of a ray near the axis.

@@ -267,6 +267,32 @@ std::vector<ChartCase> targets_cases(const ResolvedScene& found, const ChartSubj
     return std::move(cases).result();
 }
 
+std::vector<ChartCase> ghosts_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                    const SetUpView& open) {
+    Cases cases(ChartAxis::Ghosts, subject.job, "ghosts",
+                "light that surfaces of the lens reflect to the film");
+    SceneRequest lens = cases.with_lens(found);
+    lens.camera.ghosts = GhostUse::Off;
+    if (lens.camera.coating == Coating::Ideal) {
+        lens.camera.coating = Coating::Year;
+        cases.remark("No surface would reflect: ⟨coating⟩=year was taken");
+        try {
+            static_cast<void>(open(lens));
+        } catch (const ArgumentError& error) {
+            cases.remark(std::string("Left out: ") + error.what());
+            return std::move(cases).result();
+        }
+    }
+    const auto with = [](GhostUse use) {
+        return [use](SceneRequest& s, RenderJob&) { s.camera.ghosts = use; };
+    };
+    cases.add("off", lens, with(GhostUse::Off));
+    cases.add("auto", lens, with(GhostUse::Auto));
+    cases.remark("off is biased: it leaves their light out");
+    cases.independent_reference("with ghosts", lens, with(GhostUse::Auto));
+    return std::move(cases).result();
+}
+
 /// Remark that counts traversal leaks: a wrong pixel here and there hardly shows in an error.
 std::string leak_count(const SceneRequest& request, const SetUpView& open) {
     constexpr size_t kRays = 20000;
@@ -325,10 +351,11 @@ struct Maker {
     std::vector<ChartCase> (*make)(const ResolvedScene&, const ChartSubject&, const SetUpView&);
 };
 /// In the order of ChartAxis.
-constexpr Maker kMakers[] = {
-    {true, camera_cases},  {true, dispersion_cases}, {false, spectral_cases},
-    {true, iris_cases},    {false, sampler_cases},   {false, lights_cases},
-    {true, targets_cases}, {true, precision_cases},  {false, noise_cases}};
+constexpr Maker kMakers[] = {{true, camera_cases},    {true, dispersion_cases},
+                             {false, spectral_cases}, {true, iris_cases},
+                             {false, sampler_cases},  {false, lights_cases},
+                             {true, targets_cases},   {true, ghosts_cases},
+                             {true, precision_cases}, {false, noise_cases}};
 
 }  // namespace
 

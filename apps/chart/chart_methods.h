@@ -23,6 +23,7 @@ enum class ChartAxis : uint8_t {
     Sampler,
     Lights,
     Targets,
+    Ghosts,
     Precision,
     Noise
 };
@@ -37,6 +38,7 @@ inline constexpr auto kOptionNames<ChartAxis> =
                                           {"sampler", ChartAxis::Sampler},
                                           {"lights", ChartAxis::Lights},
                                           {"targets", ChartAxis::Targets},
+                                          {"ghosts", ChartAxis::Ghosts},
                                           {"precision", ChartAxis::Precision},
                                           {"noise", ChartAxis::Noise}});
 

@@ -107,6 +107,8 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
                 tolerance = std::sqrt(tolerance * tolerance - plan.precision->square);
             }
         }
+        if (first.from.camera.traced)
+            plan.ghosts = find_ghosts(compared, first, chosen.scene, best);
     }
     plan.lights_asked = request.scene.light_choice.has_value();
     if (!plan.lights_asked) plan.lights = find_lights(compared, first, chosen.scene, best);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/setup/ghosts.h"
 
+#include <algorithm>
+
 #include "camera/ghosts/ghost_camera.h"
 #include "integrator/render/executor.h"
 #include "io/base/error.h"
@@ -54,7 +56,7 @@ void add_ghosts(const CameraRequest& asked, const RenderSetup* like, const Prepa
         if (!only) return;
         throw ArgumentError("⟨ghosts⟩ only", "",
                             "shows light that two surfaces of the lens reflect, and here none "
-                            "do: give ⟨coating⟩ year or another, and a lens of more surfaces");
+                            "do: give ⟨coating⟩=year or another, and a lens of more surfaces");
     }
     const bool same = like && like->view.ghosts && like->prepared.bvh == prepared.bvh &&
                       like->view.ghosts->are_of(optics);
@@ -63,15 +65,20 @@ void add_ghosts(const CameraRequest& asked, const RenderSetup* like, const Prepa
                                                 std::move(optics), view.ghosts);
 }
 
+size_t lamps_into_lens(const View& view, std::span<const SmallFeature> things, const Bvh& bvh) {
+    const auto lens = traced_lens(view);
+    if (!lens) return 0;
+    return static_cast<size_t>(std::ranges::count_if(things, [&](const SmallFeature& thing) {
+        return thing.is_lamp() && shines_in(thing, lens->pose(), bvh);
+    }));
+}
+
 std::optional<std::string> ghost_remark(const CameraRequest& asked, const View& view,
                                         std::span<const SmallFeature> things, const Bvh& bvh) {
-    const auto lens = traced_lens(view);
-    if (!lens || asked.coating != Coating::Ideal || asked.ghosts == GhostUse::Off) return {};
-    for (const SmallFeature& thing : things)
-        if (thing.is_lamp() && shines_in(thing, lens->pose(), bvh))
-            return "a lamp shines into the lens, whose surfaces reflect nothing here: ⟨coating⟩ "
-                   "year shows its ghosts";
-    return {};
+    if (asked.coating != Coating::Ideal || asked.ghosts == GhostUse::Off) return {};
+    if (lamps_into_lens(view, things, bvh) == 0) return {};
+    return "a lamp shines into the lens, whose surfaces reflect nothing here: ⟨coating⟩=year shows "
+           "its ghosts";
 }
 
 }  // namespace petzval

@@ -19,6 +19,9 @@ namespace petzval {
 void add_ghosts(const CameraRequest&, const RenderSetup* like, const PreparedScene&,
                 const std::function<void()>& next_step, View&);
 
+/// Number of the lamps among some things that shine into the lens; 0 where none is traced.
+[[nodiscard]] size_t lamps_into_lens(const View&, std::span<const SmallFeature>, const Bvh&);
+
 /// Remark that one of these lamps shines into a lens whose coating reflects nothing; nothing where
 /// none does.
 [[nodiscard]] std::optional<std::string> ghost_remark(const CameraRequest&, const View&,

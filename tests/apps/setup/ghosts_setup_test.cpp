@@ -2,7 +2,7 @@
 // Ghosts of another view of a scene: taken where they are the same, and else searched anew.
 #include <gtest/gtest.h>
 
-#include "apps/setup/render_setup.h"
+#include "apps/setup/ghosts.h"
 
 namespace petzval {
 namespace {
@@ -76,6 +76,29 @@ TEST(GhostsSetup, ViewsWithoutThemHaveNone) {
         // They are searched where the setup before had none.
         EXPECT_TRUE(same_samples(set_up_view(view, low_sun(), kQuiet), first));
     }
+}
+
+TEST(GhostsSetup, LampsThatShineIntoTheLensAreCounted) {
+    const auto lamps = [](const std::function<void(SceneRequest&)>& change) {
+        SceneRequest asked = low_sun();
+        change(asked);
+        const RenderSetup setup = set_up_render(asked, kQuiet);
+        return lamps_into_lens(setup.view, small_features_of(*setup.prepared.scene),
+                               *setup.prepared.bvh);
+    };
+    EXPECT_EQ(lamps([](SceneRequest&) {}), 1u);
+    EXPECT_EQ(lamps([](SceneRequest& s) { s.camera.coating = Coating::Ideal; }), 1u);
+    // It looks the other way, and as a thin lens.
+    EXPECT_EQ(lamps([](SceneRequest& s) {
+                  s.camera.look_at = std::array{V3f(0, 2, 0), V3f(0, 2, 9)};
+              }),
+              0u);
+    EXPECT_EQ(lamps([](SceneRequest& s) {
+                  s.camera.lens = "thin";
+                  s.camera.fstop = 2.f;
+                  s.camera.coating = Coating::Ideal;
+              }),
+              0u);
 }
 
 // The setup of a page that has moved on ends soon.

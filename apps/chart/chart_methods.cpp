@@ -267,6 +267,53 @@ std::vector<ChartCase> targets_cases(const ResolvedScene& found, const ChartSubj
     return std::move(cases).result();
 }
 
+std::vector<ChartCase> ghosts_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                    const SetUpView& open) {
+    Cases cases(ChartAxis::Ghosts, subject.job, "ghosts",
+                "light that surfaces of the lens reflect to the film");
+    SceneRequest lens = cases.with_lens(found);
+    lens.camera.ghosts = GhostUse::Off;
+    if (lens.camera.coating == Coating::Ideal) {
+        lens.camera.coating = Coating::Year;
+        cases.remark("No surface would reflect: ⟨coating⟩=year was taken");
+        try {
+            static_cast<void>(open(lens));
+        } catch (const ArgumentError& error) {
+            cases.remark(std::string("Left out: ") + error.what());
+            return std::move(cases).result();
+        }
+    }
+    const auto with = [](GhostUse use) {
+        return [use](SceneRequest& s, RenderJob&) { s.camera.ghosts = use; };
+    };
+    cases.add("off", lens, with(GhostUse::Off));
+    cases.add("auto", lens, with(GhostUse::Auto));
+    cases.remark("off is biased: it leaves their light out");
+    cases.independent_reference("with ghosts", lens, with(GhostUse::Auto));
+    return std::move(cases).result();
+}
+
+std::vector<ChartCase> diffraction_cases(const ResolvedScene& found, const ChartSubject& subject,
+                                         const SetUpView& open) {
+    Cases cases(ChartAxis::Diffraction, subject.job, "diffraction",
+                "light that the iris spreads over the film");
+    const SceneRequest lens = cases.with_lens(found);
+    const auto with = [](DiffractionUse use) {
+        return [use](SceneRequest& s, RenderJob&) { s.camera.diffraction = use; };
+    };
+    SceneRequest asked = lens;
+    asked.camera.diffraction = DiffractionUse::Auto;
+    if (!open(asked).view.diffraction) {
+        cases.remark("Left out: here it changes nothing that is seen");
+        return std::move(cases).result();
+    }
+    cases.add("off", lens, with(DiffractionUse::Off));
+    cases.add("auto", lens, with(DiffractionUse::Auto));
+    cases.remark("off is biased: its details are too sharp, and lamps have no stars");
+    cases.independent_reference("with diffraction", lens, with(DiffractionUse::Auto));
+    return std::move(cases).result();
+}
+
 /// Remark that counts traversal leaks: a wrong pixel here and there hardly shows in an error.
 std::string leak_count(const SceneRequest& request, const SetUpView& open) {
     constexpr size_t kRays = 20000;
@@ -326,9 +373,10 @@ struct Maker {
 };
 /// In the order of ChartAxis.
 constexpr Maker kMakers[] = {
-    {true, camera_cases},  {true, dispersion_cases}, {false, spectral_cases},
-    {true, iris_cases},    {false, sampler_cases},   {false, lights_cases},
-    {true, targets_cases}, {true, precision_cases},  {false, noise_cases}};
+    {true, camera_cases},    {true, dispersion_cases}, {false, spectral_cases},
+    {true, iris_cases},      {false, sampler_cases},   {false, lights_cases},
+    {true, targets_cases},   {true, ghosts_cases},     {true, diffraction_cases},
+    {true, precision_cases}, {false, noise_cases}};
 
 }  // namespace
 

@@ -23,6 +23,8 @@ enum class ChartAxis : uint8_t {
     Sampler,
     Lights,
     Targets,
+    Ghosts,
+    Diffraction,
     Precision,
     Noise
 };
@@ -37,6 +39,8 @@ inline constexpr auto kOptionNames<ChartAxis> =
                                           {"sampler", ChartAxis::Sampler},
                                           {"lights", ChartAxis::Lights},
                                           {"targets", ChartAxis::Targets},
+                                          {"ghosts", ChartAxis::Ghosts},
+                                          {"diffraction", ChartAxis::Diffraction},
                                           {"precision", ChartAxis::Precision},
                                           {"noise", ChartAxis::Noise}});
 

@@ -63,28 +63,28 @@ std::string duration(double s) {
 
 void print(const Plan& plan, const Commands& commands) {
     for (const PlanLine& line : lines_of(plan))
-        print_line(fmt::format("{:<10} {}: {}", line.choice, line.chosen, line.reason));
+        print_line(fmt::format("{:<11} {}: {}", line.choice, line.chosen, line.reason));
     const std::string rare = rare_text(plan);
     const std::string at_least = rare.empty() ? "" : "at least ";
-    fmt::print("{:<10} {}: they bring noise from {} to {}{}\n", "samples", plan.samples,
+    fmt::print("{:<11} {}: they bring noise from {} to {}{}\n", "samples", plan.samples,
                percent(plan.first_noise), at_least, percent(plan.noise));
     if (const auto times = times_without_targets(plan))
         fmt::print(
-            "{:<10} {} {}: without them about {:.2g} times the samples\n", "targets",
+            "{:<11} {} {}: without them about {:.2g} times the samples\n", "targets",
             plan.rare.targeted,
             plan.rare.targeted == 1 ? "lamp that rays are sent to" : "lamps that rays are sent to",
             *times);
-    if (!rare.empty()) fmt::print("{:<10} {}\n", "rare light", rare);
-    fmt::print("{:<10} {}{}: {} by the model, {}{} by noise\n", "error", at_least,
+    if (!rare.empty()) fmt::print("{:<11} {}\n", "rare light", rare);
+    fmt::print("{:<11} {}{}: {} by the model, {}{} by noise\n", "error", at_least,
                percent(plan.error()), percent(plan.bias), at_least, percent(plan.noise));
-    fmt::print("{:<10} {}: from {} to {} on {} here, {} of CPU time\n", "time",
+    fmt::print("{:<11} {}: from {} to {} on {} here, {} of CPU time\n", "time",
                duration(plan.wall_s()), duration(Plan::kLeastTime * plan.wall_s()),
                duration(Plan::kMostTime * plan.wall_s()),
                plan.threads == 1 ? "a thread" : fmt::format("{} threads", plan.threads),
                duration(plan.cpu_s));
     fmt::print("{}\n", commands.samples);
     if (commands.noise)
-        fmt::print("{:<10} each part of the picture gets as many as it needs for this noise:\n{}\n",
+        fmt::print("{:<11} each part of the picture gets as many as it needs for this noise:\n{}\n",
                    "or", *commands.noise);
 }
 

@@ -22,7 +22,7 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
                        TbbExecutor& executor) {
     ModeChoice out{0, {}, resolved_request(first)};
     out.scene.spectral.mode = SpectralMode::Wavelengths;
-    // Ghosts and diffraction take part in each way alike, and would be made ready for each.
+    // Ghosts and diffraction take part in each way alike, and take time.
     const GhostUse ghosts = std::exchange(out.scene.camera.ghosts, GhostUse::Off);
     const DiffractionUse diffraction =
         std::exchange(out.scene.camera.diffraction, DiffractionUse::Off);

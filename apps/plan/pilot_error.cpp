@@ -136,16 +136,34 @@ Estimate mean_of(const std::vector<Value>& values, const std::vector<PilotPixel>
     return {certain + sum, std::sqrt(variance)};
 }
 
+V3d mean_of(const PilotModel& model, size_t pixel) {
+    V3d mean(0.);
+    for (const V3d& v : model.means(pixel)) mean += v / double(kPilotReplicates);
+    return mean;
+}
+
+double luminance_of(const V3d& c) {
+    return double(
+        luminance(Rgb(static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z))));
+}
+
 }  // namespace
+
+double mean_luminance(const Pilot& pilot, const PilotModel& model) {
+    double sum = 0, weights = 0;
+    for (size_t p = 0; p < pilot.pixels(); ++p) {
+        const double weight = pilot.chosen().pixels[p].weight;
+        sum += weight * luminance_of(mean_of(model, p));
+        weights += weight;
+    }
+    return sum / weights;
+}
 
 double pilot_floor(const Pilot& pilot, const PilotModel& model, const std::vector<V3d>& least) {
     SymmetricFloor floor;
     for (size_t p = 0; p < pilot.pixels(); ++p) {
-        V3d mean(0.);
-        for (const V3d& v : model.means(p)) mean += v / double(kPilotReplicates);
-        if (!least.empty() && least[p].length2() > 0) mean = least[p];
-        floor.add(double(luminance(Rgb(static_cast<float>(mean.x), static_cast<float>(mean.y),
-                                       static_cast<float>(mean.z)))),
+        const bool known = !least.empty() && least[p].length2() > 0;
+        floor.add(luminance_of(known ? least[p] : mean_of(model, p)),
                   pilot.chosen().pixels[p].weight);
     }
     return floor.floor();

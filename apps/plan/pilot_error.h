@@ -26,6 +26,9 @@ struct PilotScale {
     std::vector<V3d> least{};
 };
 
+/// Mean luminance of a picture, as the pilot sees it.
+[[nodiscard]] double mean_luminance(const Pilot&, const PilotModel&);
+
 /// Floor of the symmetric MSE, from what the pilot sees of a picture. least: as in PilotScale; what
 /// a pilot pixel shows by chance does not count where it is above 0.
 [[nodiscard]] double pilot_floor(const Pilot&, const PilotModel&,

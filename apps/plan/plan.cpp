@@ -107,7 +107,11 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
                 tolerance = std::sqrt(tolerance * tolerance - plan.precision->square);
             }
         }
+        if (first.from.camera.traced)
+            plan.ghosts = find_ghosts(compared, first, chosen.scene, best);
     }
+    plan.diffraction = diffraction_effect(first.view, request.scene.size, *first.prepared.scene,
+                                          *first.prepared.bvh);
     plan.lights_asked = request.scene.light_choice.has_value();
     if (!plan.lights_asked) plan.lights = find_lights(compared, first, chosen.scene, best);
     if (plan.lights) plan.scene.light_choice = plan.lights->kind;

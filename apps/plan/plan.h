@@ -11,6 +11,7 @@
 #include "apps/plan/mode_choice.h"
 #include "apps/plan/plan_details.h"
 #include "apps/plan/plan_types.h"
+#include "apps/setup/diffraction.h"
 #include "integrator/render/executor.h"
 
 namespace petzval {
@@ -30,6 +31,8 @@ struct Plan {
     std::optional<PrecisionFound> precision;  ///< where a lens is traced
     bool lights_asked = false;                ///< the request fixes how lights are chosen
     std::optional<LightsFound> lights;        ///< where there are several to choose from
+    std::optional<GhostsFound> ghosts;        ///< where a lens is traced
+    DiffractionEffect diffraction;            ///< of the camera that was asked for
     double bias = 0, noise = 0;               ///< predicted, of what was chosen with `samples`
     double first_noise = 0;                   ///< with one sample
     bool noise_at_least = false;              ///< rare light may add to the noise

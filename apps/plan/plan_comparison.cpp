@@ -337,4 +337,12 @@ std::optional<double> PlanComparison::effort_of(const SceneRequest& scene, size_
     return effort(*other) / of_own;
 }
 
+std::optional<double> PlanComparison::light_of(const SceneRequest& scene, size_t candidate) const {
+    const auto other = model(open(scene));
+    pilot_->sample(*other, kLeastSamples);
+    const double of_own = mean_luminance(*pilot_, model_of(candidate));
+    if (!(of_own > 0)) return std::nullopt;
+    return mean_luminance(*pilot_, *other) / of_own;
+}
+
 }  // namespace petzval

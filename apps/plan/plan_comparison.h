@@ -42,6 +42,9 @@ class PlanComparison {
     /// Noise times cost in rays of a candidate's scene in another request, over the candidate's
     /// own: in proportion to the time that a given noise takes. Nothing where no noise was seen.
     [[nodiscard]] std::optional<double> effort_of(const SceneRequest&, size_t candidate) const;
+    /// Mean light of a candidate's scene in another request, over that of the candidate, by a few
+    /// samples. Nothing where no light was seen.
+    [[nodiscard]] std::optional<double> light_of(const SceneRequest&, size_t candidate) const;
     /// RMS lateral dispersion in pixels; 0 unless dispersion is open.
     [[nodiscard]] double dispersion_px() const { return dispersion_px_; }
 

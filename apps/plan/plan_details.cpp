@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "apps/plan/displacement.h"
+#include "apps/setup/ghosts.h"
 
 namespace petzval {
 namespace {
@@ -26,6 +27,7 @@ std::optional<PrecisionFound> find_precision(const PlanRequest& request, const R
     SceneRequest floats = chosen, doubles = chosen;
     // One ray for all wavelengths: what they are apart is no matter of precision.
     floats.camera.dispersion = doubles.camera.dispersion = DispersionMode::Shared;
+    floats.camera.ghosts = doubles.camera.ghosts = GhostUse::Off;
     doubles.camera.precision = Precision::Double;
     const RenderSetup in_float = view_of(first, floats, executor),
                       in_double = view_of(first, doubles, executor);
@@ -52,6 +54,19 @@ std::optional<LightsFound> find_lights(const PlanComparison& compared, const Ren
     if (!effort) return std::nullopt;
     if (*effort < kWorthIt) return LightsFound{LightChoiceKind::Power, 1 / *effort};
     return LightsFound{LightChoiceKind::Tree, *effort};
+}
+
+GhostsFound find_ghosts(const PlanComparison& compared, const RenderSetup& first,
+                        const SceneRequest& chosen, size_t candidate) {
+    const Scene& scene = *first.prepared.scene;
+    GhostsFound out{first.view.ghosts != nullptr,
+                    lamps_into_lens(first.view, small_features_of(scene), *first.prepared.bvh),
+                    {}};
+    if (!out.shown) return out;
+    SceneRequest alone = chosen;
+    alone.camera.ghosts = GhostUse::Only;
+    out.share = compared.light_of(alone, candidate);
+    return out;
 }
 
 }  // namespace petzval

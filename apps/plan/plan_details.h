@@ -31,4 +31,14 @@ struct LightsFound {
                                                      const RenderSetup& first,
                                                      const SceneRequest& chosen, size_t candidate);
 
+/// Ghosts of a lens that is traced.
+struct GhostsFound {
+    bool shown;                   ///< its surfaces reflect, and they are not left out
+    size_t lamps;                 ///< that shine into the lens, whatever it reflects
+    std::optional<double> share;  ///< of the picture's light, about; nothing: not shown, or dark
+};
+/// Ghosts of a candidate of a comparison.
+[[nodiscard]] GhostsFound find_ghosts(const PlanComparison&, const RenderSetup& first,
+                                      const SceneRequest& chosen, size_t candidate);
+
 }  // namespace petzval

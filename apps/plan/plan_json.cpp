@@ -2,13 +2,14 @@
 #include "apps/plan/plan_json.h"
 
 #include "apps/plan/plan_wording.h"
+#include "apps/request/option_text.h"
 
 namespace petzval {
 
 nlohmann::ordered_json json_of(const Plan& plan) {
     nlohmann::ordered_json out;
     for (const PlanLine& line : lines_of(plan)) {
-        nlohmann::ordered_json one{{"chosen", line.chosen}, {"reason", line.reason}};
+        nlohmann::ordered_json one{{"chosen", line.chosen}, {"reason", as_options(line.reason)}};
         one["predicted_error"] = line.error ? nlohmann::ordered_json(*line.error) : nullptr;
         out[line.choice] = one;
     }

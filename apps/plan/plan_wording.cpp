@@ -124,6 +124,40 @@ PlanLine precision_line(const Plan& plan) {
         {}};
 }
 
+std::string lamps_into_lens_text(size_t lamps) {
+    return (lamps == 1 ? "a lamp shines" : fmt::format("{} lamps shine", lamps)) + " into the lens";
+}
+
+PlanLine ghosts_line(const Plan& plan) {
+    const CameraRequest& asked = plan.requested.asked.camera;
+    if (!plan.ghosts) return {"ghosts", "off", "no lens is traced", {}};
+    if (asked.ghosts == GhostUse::Off) return {"ghosts", "off", "it was asked for", {}};
+    const auto [shown, lamps, share] = *plan.ghosts;
+    if (!shown)
+        return {"ghosts",
+                "off",
+                lamps == 0 ? "no surface reflects, and no lamp shines into the lens"
+                           : "no surface reflects; " + lamps_into_lens_text(lamps) +
+                                 ": ⟨coating⟩=year shows ghosts",
+                {}};
+    std::string why = fmt::format("surfaces reflect, with coating {}", name_of(asked.coating));
+    if (share && asked.ghosts == GhostUse::Auto)
+        why += fmt::format(", about {} of the picture's light", percent(*share));
+    if (lamps > 0) why += "; " + lamps_into_lens_text(lamps);
+    return {"ghosts", name_of(asked.ghosts), why, {}};
+}
+
+PlanLine diffraction_line(const Plan& plan) {
+    const bool asked = plan.requested.asked.camera.diffraction == DiffractionUse::Auto;
+    std::string why = plan.diffraction.text();
+    if (!asked && plan.diffraction.matters()) why += ": ⟨diffraction⟩ auto shows it";
+    return {
+        "diffraction",
+        name_of(asked && plan.diffraction.matters() ? DiffractionUse::Auto : DiffractionUse::Off),
+        why,
+        {}};
+}
+
 PlanLine lights_line(const Plan& plan) {
     if (plan.lights_asked) return {"lights", name_of(plan.scene.lights()), "it was asked for", {}};
     if (!plan.lights)
@@ -204,8 +238,8 @@ std::optional<double> times_without_targets(const Plan& plan) {
 }
 
 std::vector<PlanLine> lines_of(const Plan& plan) {
-    return {camera_line(plan), spectral_line(plan), dispersion_line(plan), precision_line(plan),
-            lights_line(plan)};
+    return {camera_line(plan), spectral_line(plan),    dispersion_line(plan), precision_line(plan),
+            ghosts_line(plan), diffraction_line(plan), lights_line(plan)};
 }
 
 RenderRequest carried_out(const Plan& plan, RenderRequest request) {

@@ -37,7 +37,8 @@ struct PlanLine {
     std::string choice, chosen, reason;
     std::optional<double> error;  ///< predicted, of what was chosen; absent: nothing is lost
 };
-/// A line for each choice: camera, spectral, dispersion.
+/// A line for each choice: camera, spectral, dispersion, precision, ghosts, diffraction,
+/// lights.
 [[nodiscard]] std::vector<PlanLine> lines_of(const Plan&);
 
 /// Request that the plan leads to, with its choices in place of those that were asked for.

@@ -9,6 +9,7 @@
 
 #include "apps/setup/lamps_in_view.h"
 #include "camera/diffraction/diffraction_camera.h"
+#include "camera/ray_bundle.h"
 #include "camera/targets/make_target_camera.h"
 #include "camera/waves/rays_and_pattern.h"
 #include "core/light/small_features.h"
@@ -79,15 +80,25 @@ std::optional<std::string> diffraction_doubt(const View& view, V2i frame_px, dou
         limits->field_deg, worst.cycles_per_mm, worst.by_rays_and_pattern, worst.by_waves);
 }
 
-std::shared_ptr<const Camera> with_diffraction(const SceneRequest& asked, const View& view,
-                                               const Scene& scene, const Bvh& bvh) {
-    if (asked.camera.diffraction == DiffractionUse::Off) return view.camera;
-    if (!diffraction_effect(view, asked.size, scene, bvh).matters()) return view.camera;
-    const StopCamera camera = *stop_camera(view.still);
-    FilmSpread spread(camera);
-    LampImages images(*target_camera(view.still), asked.size,
-                      star_lamps(scene, pose_of(camera), bvh), spread);
-    return std::make_shared<DiffractionCamera>(view.camera, std::move(spread), std::move(images));
+void add_diffraction(const SceneRequest& asked, const RenderSetup* like,
+                     const PreparedScene& prepared, View& view) {
+    if (asked.camera.diffraction == DiffractionUse::Off) return;
+    const bool same = like && like->view.diffraction && like->prepared.bvh == prepared.bvh &&
+                      like->from.asked.size == asked.size &&
+                      has_same_rays(*view.still, *like->view.still);
+    if (same) {
+        view.diffraction = like->view.diffraction;
+    } else {
+        const Scene& scene = *prepared.scene;
+        if (!diffraction_effect(view, asked.size, scene, *prepared.bvh).matters()) return;
+        const StopCamera camera = *stop_camera(view.still);
+        FilmSpread spread(camera);
+        LampImages lamps(*target_camera(view.still), asked.size,
+                         star_lamps(scene, pose_of(camera), *prepared.bvh), spread);
+        view.diffraction =
+            std::make_shared<const Diffraction>(Diffraction{std::move(spread), std::move(lamps)});
+    }
+    view.camera = std::make_shared<DiffractionCamera>(std::move(view.camera), view.diffraction);
 }
 
 }  // namespace petzval

@@ -31,8 +31,8 @@ struct DiffractionEffect {
 [[nodiscard]] std::optional<std::string> diffraction_doubt(const View&, V2i frame_px,
                                                            double focus_m);
 
-/// The camera of a view, spread by diffraction where that was asked for and matters.
-[[nodiscard]] std::shared_ptr<const Camera> with_diffraction(const SceneRequest&, const View&,
-                                                             const Scene&, const Bvh&);
+/// Spreads the camera of a view by diffraction where that was asked for and matters. like: nullptr,
+/// or a setup from which it is taken where rays, scene and size are the same.
+void add_diffraction(const SceneRequest&, const RenderSetup* like, const PreparedScene&, View&);
 
 }  // namespace petzval

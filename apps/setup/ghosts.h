@@ -2,7 +2,7 @@
 // Ghosts of a traced lens: whether a render shows them.
 #pragma once
 
-#include <memory>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,11 +12,15 @@
 
 namespace petzval {
 
-/// The camera that renders with its lens's ghosts beside its own rays, or without; itself where
-/// there are none to show. Throws ArgumentError where ghosts alone are asked for and no surface
-/// reflects.
-[[nodiscard]] std::shared_ptr<const Camera> with_ghosts(const CameraRequest&, const View&,
-                                                        const Scene&, const Bvh&);
+/// Adds to the camera that renders the ghosts of its lens, beside its own rays or instead of them,
+/// where there are any to show. What is the same in another setup of the scene is taken from there;
+/// nullptr: there is none. next_step: called again and again; an exception of it ends the search.
+/// Throws ArgumentError where ghosts alone are asked for and no surface reflects.
+void add_ghosts(const CameraRequest&, const RenderSetup* like, const PreparedScene&,
+                const std::function<void()>& next_step, View&);
+
+/// Number of the lamps among some things that shine into the lens; 0 where none is traced.
+[[nodiscard]] size_t lamps_into_lens(const View&, std::span<const SmallFeature>, const Bvh&);
 
 /// Remark that one of these lamps shines into a lens whose coating reflects nothing; nothing where
 /// none does.

@@ -246,8 +246,8 @@ std::vector<SmallFeature> compose_camera(const SceneRequest& asked, const Render
             aims->set_targets(view.targets);
             if (view.targets) view.camera = std::move(aims);
         }
-    view.camera = with_diffraction(asked, view, *prepared.scene, *prepared.bvh);
-    view.camera = with_ghosts(asked.camera, view, *prepared.scene, *prepared.bvh);
+    add_diffraction(asked, like, prepared, view);
+    add_ghosts(asked.camera, like, prepared, next_step, view);
     next_step();
     view.camera = moved(std::move(view.camera), view);
     return features;

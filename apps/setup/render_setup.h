@@ -25,6 +25,9 @@
 
 namespace petzval {
 
+struct Diffraction;
+class GhostDraws;
+
 /// A loaded scene that views of it share. Nothing in it changes any more; copies are cheap.
 struct PreparedScene {
     std::shared_ptr<const Scene> scene;  ///< on the heap: bvh and lights point to it
@@ -57,10 +60,12 @@ struct View {
     std::shared_ptr<const Camera> camera;  ///< that renders: with its targets and its shutter
     /// The same in the middle of the exposure and without targets, for whoever asks where rays go.
     std::shared_ptr<const Camera> still;
-    std::unique_ptr<Camera> finder;             ///< as still, with a narrow iris
-    std::shared_ptr<const TargetGrid> targets;  ///< nullptr: none
-    std::shared_ptr<const Shutter> shutter;     ///< nullptr: nothing moves
-    std::optional<size_t> of_file;              ///< the camera's index among those of the file
+    std::unique_ptr<Camera> finder;                  ///< as still, with a narrow iris
+    std::shared_ptr<const TargetGrid> targets;       ///< nullptr: none
+    std::shared_ptr<const GhostDraws> ghosts;        ///< nullptr: none are shown
+    std::shared_ptr<const Diffraction> diffraction;  ///< nullptr: rays alone
+    std::shared_ptr<const Shutter> shutter;          ///< nullptr: nothing moves
+    std::optional<size_t> of_file;                   ///< the camera's index among those of the file
     Observer observer;
     std::optional<Rgb> visible_background;  ///< shown behind the scene in place of the environment
 };

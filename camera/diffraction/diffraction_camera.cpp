@@ -33,7 +33,7 @@ auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const
     OfSample out{{at.film, splat(1.f), 1.f}, {}};
     const float node = at.sampler.get1(Dim::DiffractionPick);
     float pick = node;
-    const SpreadHere here = spread_.at(at.film, pick);
+    const SpreadHere here = light_->spread.at(at.film, pick);
     if (!here.pattern) return out;
     const int count = lane_count(bands.on);
     const float of_lane = pick * float(count);
@@ -42,7 +42,8 @@ auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const
     while (!bands.on[drawn] || left-- > 0) ++drawn;
     const V2f v = here.pattern->draw(rest, at.sampler.get2(Dim::Diffraction));
     static constexpr LampImages::Choice kNone;
-    const LampImages::Choice& choice = lamps_.empty() ? kNone : lamps_.choice(at.film);
+    const LampImages::Choice& choice =
+        light_->lamps.empty() ? kNone : light_->lamps.choice(at.film);
     const auto densities = [&](const SpreadHere& spread, V2f by) {
         f4 of_lanes{};
         for (int i = 0; i < 4; ++i)
@@ -53,12 +54,12 @@ auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const
         Displaced there{at.film + by, f4{}, 0};
         const f4 drawn_so = densities(here, by);
         const float mean = hsum(drawn_so) / float(count);
-        const float both = mean + lamps_.density(choice, at.film, by);
+        const float both = mean + light_->lamps.density(choice, at.film, by);
         if (!(both > 0) || !std::isfinite(both)) return there;
         f4 aimed_there = drawn_so;
         if (std::max(std::fabs(by.x), std::fabs(by.y)) > kSamePupil) {
             float again = node;
-            const SpreadHere pupil = spread_.at(there.film, again);
+            const SpreadHere pupil = light_->spread.at(there.film, again);
             if (!pupil.pattern) return there;
             aimed_there = densities(pupil, by);
         }
@@ -69,7 +70,8 @@ auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const
     };
     out.by_pattern = weighed(here.displacement(v, lane_nm(bands, drawn)));
     if (const float star = at.sampler.get1(Dim::StarPick); star < choice.chance)
-        out.to_lamp = weighed(lamps_.draw(choice, at.film, star, at.sampler.get2(Dim::StarPoint)));
+        out.to_lamp =
+            weighed(light_->lamps.draw(choice, at.film, star, at.sampler.get2(Dim::StarPoint)));
     return out;
 }
 

@@ -8,6 +8,12 @@
 
 namespace petzval {
 
+/// Where light of a camera goes by diffraction, and which lamps have stars.
+struct Diffraction {
+    FilmSpread spread;
+    LampImages lamps;
+};
+
 /// Rays of another camera from displaced film points: each by a draw of the diffraction pattern as
 /// that film point sees it, so that the picture is that of rays, spread by the pattern. A sample
 /// belongs to its pixel still. All lanes share a displacement, drawn for one of them and weighed by
@@ -15,8 +21,8 @@ namespace petzval {
 /// weighed by the density of both (balance heuristic, Veach and Guibas 1995).
 class DiffractionCamera final : public Camera {
   public:
-    DiffractionCamera(std::shared_ptr<const Camera> rays, FilmSpread spread, LampImages lamps)
-        : rays_(std::move(rays)), spread_(std::move(spread)), lamps_(std::move(lamps)) {}
+    DiffractionCamera(std::shared_ptr<const Camera> rays, std::shared_ptr<const Diffraction> light)
+        : rays_(std::move(rays)), light_(std::move(light)) {}
 
     [[nodiscard]] CameraSample sample(const FilmPoint& point, const Bands& bands) const override {
         return one_of_all(point, bands);
@@ -38,8 +44,7 @@ class DiffractionCamera final : public Camera {
     [[nodiscard]] OfSample displaced(const FilmPoint&, const Bands&) const;
 
     std::shared_ptr<const Camera> rays_;
-    FilmSpread spread_;
-    LampImages lamps_;
+    std::shared_ptr<const Diffraction> light_;
 };
 
 }  // namespace petzval

@@ -23,10 +23,10 @@ struct GhostCamera::Place {
 };
 
 GhostCamera::GhostCamera(std::shared_ptr<const Camera> in_order, GhostOptics optics,
-                         GhostRegions regions)
+                         std::shared_ptr<const GhostDraws> draws)
     : in_order_(std::move(in_order)),
       optics_(std::move(optics)),
-      draws_(optics_, std::move(regions)),
+      draws_(std::move(draws)),
       line_d_(optics_.lens().exact_indices(splat(float(kLineD_nm)))) {}
 
 void GhostCamera::sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
@@ -52,7 +52,7 @@ void GhostCamera::add_ghosts(const FilmPoint& point, const Bands& bands, CameraS
     if (!shared)
         for (int i = 0; i < 4; ++i) place.wave[i] = wave_of(nm[i]);
     const auto [over_all, through_region] =
-        draws_.draw(place.film_mm, place.wave[bands.hero], point.sampler);
+        draws_->draw(place.film_mm, place.wave[bands.hero], point.sampler);
     if (through_region) add_rays(place, *through_region, bands.on, kEffortBesideLamp, out);
     if (over_all) add_rays(place, *over_all, shared ? bands.on : only_lane(bands.hero), 1, out);
 }
@@ -72,7 +72,7 @@ void GhostCamera::add_rays(const Place& place, const GhostDraw& drawn, m4 lanes,
     for (int i = 0; i < 4; ++i)
         if (place.bands.on[i]) waves[count++] = place.wave[i];
     const float density =
-        draws_.density(place.film_mm, {waves.data(), place.shared ? 1 : count}, drawn);
+        draws_->density(place.film_mm, {waves.data(), place.shared ? 1 : count}, drawn);
     const LensCamera& camera = optics_.camera();
     const float scale = camera.gain() * found->sr_per_mm2 / (density * effort) * float(on) /
                         float(lane_count(lanes));

@@ -15,9 +15,8 @@ class GhostCamera final : public Camera {
   public:
     /// in_order: brings the light that no surface reflects, through the same lens; nullptr: ghosts
     /// alone are shown.
-    GhostCamera(std::shared_ptr<const Camera> in_order, GhostOptics, GhostRegions);
-    GhostCamera(const GhostCamera&) = delete;
-    GhostCamera& operator=(const GhostCamera&) = delete;
+    GhostCamera(std::shared_ptr<const Camera> in_order, GhostOptics,
+                std::shared_ptr<const GhostDraws>);
 
     [[nodiscard]] CameraSample sample(const FilmPoint& point, const Bands& bands) const override {
         return one_of_all(point, bands);
@@ -32,7 +31,7 @@ class GhostCamera final : public Camera {
 
     std::shared_ptr<const Camera> in_order_;
     GhostOptics optics_;
-    GhostDraws draws_;
+    std::shared_ptr<const GhostDraws> draws_;
     LensIndices<f4> line_d_;
 };
 

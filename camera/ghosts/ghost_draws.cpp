@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "camera/ray_bundle.h"
+
 namespace petzval {
 namespace {
 
@@ -15,8 +17,14 @@ constexpr float kByLamps = 0.4f;
 
 }  // namespace
 
-GhostDraws::GhostDraws(const GhostOptics& optics, GhostRegions regions)
-    : pupils_(optics), regions_(std::move(regions)) {}
+GhostDraws::GhostDraws(GhostOptics optics, GhostRegions regions, const RunGhostTasks& run)
+    : optics_(std::move(optics)), pupils_(optics_, run), regions_(std::move(regions)) {}
+
+bool GhostDraws::are_of(const GhostOptics& other) const {
+    const LensCamera &camera = optics_.camera(), &of_other = other.camera();
+    return camera.input().coating == of_other.input().coating && optics_.pairs() == other.pairs() &&
+           has_same_rays(camera, of_other);
+}
 
 auto GhostDraws::draw(V2f film_mm, float wave, const Sampler& sampler) const -> OfSample {
     OfSample out;

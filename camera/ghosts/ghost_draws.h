@@ -16,8 +16,13 @@ namespace petzval {
 /// pairs that are bright in an even scene or by the lamps; and through the regions of lamps.
 class GhostDraws {
   public:
-    /// The optics must outlive it.
-    GhostDraws(const GhostOptics&, GhostRegions);
+    GhostDraws(GhostOptics, GhostRegions, const RunGhostTasks& = one_by_one);
+    GhostDraws(const GhostDraws&) = delete;
+    GhostDraws& operator=(const GhostDraws&) = delete;
+
+    /// Whether they are, for the same lamps, those of another camera too, to the bit: it has the
+    /// same rays, and its lens the same coating.
+    [[nodiscard]] bool are_of(const GhostOptics&) const;
 
     /// Draws of one sample: over all, and through a region. Few samples have any.
     struct OfSample {
@@ -30,6 +35,7 @@ class GhostDraws {
     [[nodiscard]] float density(V2f film_mm, std::span<const float> waves, const GhostDraw&) const;
 
   private:
+    GhostOptics optics_;
     GhostPupils pupils_;
     GhostRegions regions_;
 };

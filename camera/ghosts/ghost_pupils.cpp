@@ -26,16 +26,18 @@ bool is_after(const GhostRegion& a, const GhostRegion& b) {
 
 }  // namespace
 
-GhostPupils::GhostPupils(const GhostOptics& optics)
-    : optics_(optics), line_d_(optics.lens().exact_indices(splat8(float(kLineD_nm)))) {
-    float all = 0;
-    for (uint32_t k = 0; k < optics.pairs().size(); ++k) {
+GhostPupils::GhostPupils(const GhostOptics& optics, const RunGhostTasks& run)
+    : optics_(optics),
+      line_d_(optics.lens().exact_indices(splat8(float(kLineD_nm)))),
+      regions_(optics.pairs().size() * kCells),
+      chances_(optics.pairs().size()) {
+    run(chances_.size(), [&](size_t k) {
         for (int cell = 0; cell < kCells; ++cell)
-            regions_.push_back(region_of(optics.pairs()[k], cell));
-        chances_.push_back(light_of(k));
-        all += chances_.back();
-    }
-    float sum = 0;
+            regions_[k * kCells + size_t(cell)] = region_of(optics.pairs()[k], cell);
+        chances_[k] = light_of(uint32_t(k));
+    });
+    float all = 0, sum = 0;
+    for (const float chance : chances_) all += chance;
     const float even = kEven / float(chances_.size());
     for (float& chance : chances_) {
         chance = all > 0 ? (1 - kEven) * chance / all + even : even / kEven;

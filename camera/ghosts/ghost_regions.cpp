@@ -14,6 +14,8 @@ constexpr size_t kMostLamps = 8;
 constexpr double kDarkest = 1e-4;
 /// Parts of the first surface that are looked at for all lamps and pairs: some seconds.
 constexpr int kMostParts = 60'000;
+/// Lamps' pairs that are searched at once, each as though the others before it took no parts.
+constexpr size_t kAtOnce = 32;
 /// Cells across the longer side of the film.
 constexpr int kCells = 64;
 constexpr size_t kMostInCell = 2048;
@@ -42,7 +44,8 @@ std::optional<GhostLamp> lamp_of(const SmallFeature& f, const LensCamera& camera
 
 }  // namespace
 
-GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeature> things) {
+GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeature> things,
+                           const RunGhostTasks& run) {
     std::vector<GhostLamp> lamps;
     for (const SmallFeature& thing : things)
         if (thing.is_lamp())
@@ -54,16 +57,7 @@ GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeatu
         return lamp.nits_sr < kDarkest * most;
     });
     if (lamps.empty()) return;
-    const GhostSearch search(optics);
-    // The pairs that reflect most come first, as the search must end.
-    std::vector<uint32_t> pairs(optics.pairs().size());
-    std::iota(pairs.begin(), pairs.end(), 0u);
-    std::ranges::stable_sort(pairs, std::greater(),
-                             [&](uint32_t k) { return optics.reflects(optics.pairs()[k]); });
-    int parts_left = kMostParts;
-    for (const GhostLamp& lamp : lamps)
-        for (const uint32_t pair : pairs) search.find(pair, lamp, parts_left, regions_);
-    std::erase_if(regions_, [](const GhostRegion& r) { return !(r.light > 0); });
+    search(optics, lamps, run);
     film_mm_ = V2f(float(optics.camera().input().film_width_mm),
                    float(optics.camera().input().film_height_mm));
     const float longer = std::max(film_mm_.x, film_mm_.y);
@@ -71,7 +65,34 @@ GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeatu
         return std::max(1, int(std::lround(kCells * mm / longer)));
     };
     cells_ = {count(film_mm_.x), count(film_mm_.y)};
-    list_regions();
+    list_regions(run);
+}
+
+void GhostRegions::search(const GhostOptics& optics, std::span<const GhostLamp> lamps,
+                          const RunGhostTasks& run) {
+    const GhostSearch search(optics);
+    // The pairs that reflect most come first, as the search must end.
+    std::vector<uint32_t> pairs(optics.pairs().size());
+    std::iota(pairs.begin(), pairs.end(), 0u);
+    std::ranges::stable_sort(pairs, std::greater(),
+                             [&](uint32_t k) { return optics.reflects(optics.pairs()[k]); });
+    const size_t all = lamps.size() * pairs.size();
+    int left = kMostParts;
+    for (size_t first = 0; first < all; first += kAtOnce) {
+        const int most = left;
+        const auto find = [&](size_t i, int most_parts) {
+            return search.find(pairs[(first + i) % pairs.size()], lamps[(first + i) / pairs.size()],
+                               most_parts);
+        };
+        std::vector<GhostSearch::Found> found(std::min(kAtOnce, all - first));
+        run(found.size(), [&](size_t i) { found[i] = find(i, most); });
+        for (size_t i = 0; i < found.size(); ++i) {
+            if (most > 0 && left < most && found[i].parts >= left) found[i] = find(i, left);
+            left -= found[i].parts;
+            std::ranges::copy_if(found[i].regions, std::back_inserter(regions_),
+                                 [](const GhostRegion& r) { return r.light > 0; });
+        }
+    }
 }
 
 template <class F>
@@ -91,7 +112,7 @@ void GhostRegions::each_cell(const GhostRegion& r, const F& f) const {
               share(low.x, high.x, x) * share(low.y, high.y, y));
 }
 
-void GhostRegions::list_regions() {
+void GhostRegions::list_regions(const RunGhostTasks& run) {
     struct Member {
         uint32_t region;
         float light;
@@ -102,12 +123,15 @@ void GhostRegions::list_regions() {
             lists[cell].push_back({k, regions_[k].light * share});
         });
     const auto pair_of = [&](const Member& m) { return regions_[m.region].pair; };
-    const auto first_group = [&] { return groups_.begin() + cells_begin_.back(); };
-    cells_begin_.push_back(0);
-    for (std::vector<Member>& list : lists) {
+    run(lists.size(), [&](size_t cell) {
+        std::vector<Member>& list = lists[cell];
         std::ranges::stable_sort(list, std::greater(), &Member::light);
         list.resize(std::min(list.size(), kMostInCell));
         std::ranges::stable_sort(list, {}, pair_of);
+    });
+    const auto first_group = [&] { return groups_.begin() + cells_begin_.back(); };
+    cells_begin_.push_back(0);
+    for (const std::vector<Member>& list : lists) {
         float all = 0, sum = 0;
         for (const Member& m : list) all += m.light;
         for (size_t i = 0; i < list.size(); ++i) {

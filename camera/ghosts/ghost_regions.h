@@ -10,9 +10,12 @@
 
 #include "camera/ghosts/ghost_optics.h"
 #include "camera/ghosts/ghost_region.h"
+#include "camera/ghosts/ghost_tasks.h"
 #include "core/light/small_features.h"
 
 namespace petzval {
+
+struct GhostLamp;
 
 /// Regions for each part of a film. Whatever they are, a picture keeps its mean: they are places
 /// to draw from, each with a density.
@@ -20,9 +23,10 @@ class GhostRegions {
   public:
     GhostRegions() = default;
     /// Regions of the lamps among some things, as a camera sees them whose film it is: of the
-    /// brightest lamps, those that are small. A function of the arguments alone; no ray is cast
-    /// into the scene.
-    GhostRegions(const GhostOptics&, std::span<const SmallFeature>);
+    /// brightest lamps, those that are small. A function of the arguments alone, whatever runs its
+    /// parts; no ray is cast into the scene.
+    GhostRegions(const GhostOptics&, std::span<const SmallFeature>,
+                 const RunGhostTasks& = one_by_one);
 
     /// Whether there are regions for film points about this one.
     [[nodiscard]] bool serve(V2f film_mm) const { return !groups_at(film_mm).empty(); }
@@ -41,7 +45,8 @@ class GhostRegions {
         float up_to;          ///< share of the cell's light of this pair and those before
         uint32_t first, end;  ///< in members_
     };
-    void list_regions();
+    void search(const GhostOptics&, std::span<const GhostLamp>, const RunGhostTasks&);
+    void list_regions(const RunGhostTasks&);
     [[nodiscard]] std::span<const Group> groups_at(V2f film_mm) const;
     /// Group that a number in [0, 1) picks; it becomes one within the group.
     [[nodiscard]] static const Group& picked(std::span<const Group>, float& pick);

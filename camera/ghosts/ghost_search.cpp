@@ -135,13 +135,12 @@ class PairSearch {
   public:
     /// unit: light on the film for each mm^2 of light that enters.
     PairSearch(const GhostOptics& optics, const LampRays& rays, uint32_t pair, double unit,
-               int& parts_left, std::vector<GhostRegion>& out)
+               int most_parts)
         : rays_(rays),
           pair_(pair),
           unit_(unit),
           rear_mm_(float(optics.rear_mm())),
-          out_(out),
-          left_(parts_left) {
+          most_parts_(most_parts) {
         const V2f corner = optics.camera().film_mm(V2f(0.f));
         film_ = {std::fabs(corner.x), std::fabs(corner.y)};
     }
@@ -153,6 +152,7 @@ class PairSearch {
     };
     /// Finds the regions of a square.
     void find(const Part& whole, const Level&);
+    [[nodiscard]] GhostSearch::Found found() && { return std::move(found_); }
 
   private:
     [[nodiscard]] bool meets_film(const GhostRegion& r) const {
@@ -181,9 +181,9 @@ class PairSearch {
     uint32_t pair_;
     double unit_;
     float rear_mm_;
-    std::vector<GhostRegion>& out_;
+    int most_parts_;
     V2f film_;
-    int& left_;
+    GhostSearch::Found found_;
 };
 
 void PairSearch::find(const Part& whole, const Level& level) {
@@ -209,7 +209,7 @@ void PairSearch::find(const Part& whole, const Level& level) {
         return near;
     };
     for (int k = 0; k < count * count; ++k) {
-        --left_;
+        ++found_.parts;
         const double near = light_near(k), light = light_mm2[size_t(k)];
         if (!(near > 0)) continue;
         const std::vector<GhostRecord> records = rays_.through(part_of(k), kBatches, Clip::No);
@@ -217,14 +217,15 @@ void PairSearch::find(const Part& whole, const Level& level) {
         auto [region, sees, open] = tells ? straight_region(records) : StraightRegion{};
         const bool by_rims = open < kSeesEnough && divisions > kDivisions - kDivisionsByRims;
         const bool is_bad = sees < (divisions > kLastDivisions ? kSeesEnough : kBad);
-        if (divisions > 0 && light > 0 && left_ > 0 &&
+        if (divisions > 0 && light > 0 && found_.parts < most_parts_ &&
             ((is_bad && (divisions > kDivisions - kTried || sees > kHelps * saw)) || by_rims)) {
-            const size_t before = out_.size();
+            const size_t before = found_.regions.size();
             // As many rays as it takes to meet the light again.
             const double rays = 8. * batches / double(lit_mm[size_t(k)].size());
             find(part_of(k),
                  {2, divisions - 1, std::clamp(uint32_t(rays / 4), kBatches, kFirstBatches), sees});
-            if (out_.size() > before) continue;  // else its rays slip through between others
+            if (found_.regions.size() > before)
+                continue;  // else its rays slip through between others
         }
         if (!tells || !meets_film(region)) {
             if (!(light > 0)) continue;
@@ -238,33 +239,31 @@ void PairSearch::find(const Part& whole, const Level& level) {
         // Rays between those that were traced may pass where these did not.
         constexpr double kLeastShare = 0.05;
         region.light = float(unit_ * std::max(light, kLeastShare * near) / double(size.x * size.y));
-        out_.push_back(region);
+        found_.regions.push_back(region);
     }
 }
 
 }  // namespace
 
 GhostSearch::GhostSearch(const GhostOptics& optics) : optics_(optics), draws_(kFirstBatches) {
-    const bool achromatic = optics.camera().input().dispersion == DispersionMode::Shared;
     for (uint32_t batch = 0; batch < draws_.size(); ++batch) {
         LampDraws& draws = draws_[batch];
         for (uint32_t i = 0; i < 8; ++i) {
             const Sampler sampler(SamplerKind::Owen, 1, {0, 0, 8 * batch + i});
             draws.in_part[i] = V2d(sampler.get2(Dim::Lens));
             draws.on_lamp[i] = V2d(uniform_disk(sampler.get2(Dim::LightPoint)));
-            draws.nm[int(i)] =
-                achromatic ? float(kLineD_nm) : 400 + 300 * sampler.get1(Dim::Wavelength);
+            draws.nm[int(i)] = 400 + 300 * sampler.get1(Dim::Wavelength);
         }
         draws.indices = optics.lens().indices(draws.nm);
     }
 }
 
-void GhostSearch::find(uint32_t pair, const GhostLamp& lamp, int& parts_left,
-                       std::vector<GhostRegion>& out) const {
+auto GhostSearch::find(uint32_t pair, const GhostLamp& lamp, int most_parts) const -> Found {
     const LampRays rays(optics_, draws_, pair, lamp);
     const double unit = lamp.nits_sr * double(optics_.reflects(optics_.pairs()[pair]));
-    PairSearch(optics_, rays, pair, unit, parts_left, out)
-        .find(rays.whole(), {kParts, kDivisions, kFirstBatches});
+    PairSearch search(optics_, rays, pair, unit, most_parts);
+    search.find(rays.whole(), {kParts, kDivisions, kFirstBatches});
+    return std::move(search).found();
 }
 
 }  // namespace petzval

@@ -30,10 +30,15 @@ class GhostSearch {
     /// The optics must outlive it.
     explicit GhostSearch(const GhostOptics&);
 
-    /// Appends the regions of a lamp's ghosts by one pair: one for each part of the first surface
-    /// whose light reaches the film, and a few beside them. parts_left: parts that may be looked at
-    /// yet; after them none is divided.
-    void find(uint32_t pair, const GhostLamp&, int& parts_left, std::vector<GhostRegion>&) const;
+    /// What was found, and the number of parts of the first surface that were looked at for it.
+    struct Found {
+        std::vector<GhostRegion> regions;
+        int parts = 0;
+    };
+    /// The regions of a lamp's ghosts by one pair: one for each part of the first surface whose
+    /// light reaches the film, and a few beside them. After most_parts none is divided: where fewer
+    /// were looked at, any larger number finds the same.
+    [[nodiscard]] Found find(uint32_t pair, const GhostLamp&, int most_parts) const;
 
   private:
     const GhostOptics& optics_;

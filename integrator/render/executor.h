@@ -9,6 +9,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <thread>
@@ -60,6 +61,13 @@ class TbbExecutor {
     tbb::task_arena arena_;
     std::function<void()> before_task_;
 };
+
+/// Runs f(task) for every task in [0, count) on the threads of the arena that the caller is in, or
+/// of the machine where it is in none.
+template <class F>
+void run_here(size_t count, const F& f) {
+    tbb::parallel_for(size_t{0}, count, f);
+}
 
 class ThreadExecutor {
   public:

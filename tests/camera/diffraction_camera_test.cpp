@@ -33,7 +33,8 @@ std::shared_ptr<const ThinLensCamera> thin_lens(const ApertureShape& shape = Dis
 
 DiffractionCamera diffracting(std::shared_ptr<const Camera> rays, LampImages lamps = {}) {
     FilmSpread spread(*stop_camera(rays));
-    return {std::move(rays), std::move(spread), std::move(lamps)};
+    return {std::move(rays),
+            std::make_shared<const Diffraction>(Diffraction{std::move(spread), std::move(lamps)})};
 }
 
 Sampler sampler_of(uint32_t i, SamplerKind kind = SamplerKind::Owen) {

@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <thread>
+#include <tuple>
+
+#include "camera/ghosts/ghost_search.h"
 #include "tests/measure/ghost_light.h"
 
 namespace petzval {
@@ -80,8 +84,12 @@ TEST(GhostCamera, OfALampKeepTheirMeanWithRegionsAndWithout) {
     const GhostOptics optics(camera);
     GhostRegions regions(optics, {&sun, 1});
     ASSERT_TRUE(regions.serve(V2f(0.f)));
-    const Sums with = light_of(GhostCamera(nullptr, optics, std::move(regions)), sun, kCount),
-               without = light_of(GhostCamera(nullptr, optics, {}), sun, kCount);
+    const auto draws = [&](GhostRegions of) {
+        return std::make_shared<const GhostDraws>(optics, std::move(of));
+    };
+    const Sums with =
+                   light_of(GhostCamera(nullptr, optics, draws(std::move(regions))), sun, kCount),
+               without = light_of(GhostCamera(nullptr, optics, draws({})), sun, kCount);
     const double error = std::sqrt(with.variance(kCount) + without.variance(kCount));
     EXPECT_LT(error, 0.08 * without.sum);
     EXPECT_NEAR(with.sum, without.sum, 4 * error);
@@ -90,75 +98,58 @@ TEST(GhostCamera, OfALampKeepTheirMeanWithRegionsAndWithout) {
         << without.variance(kCount);
 }
 
-/// Height and angle, in the medium, of a ray near the axis.
-struct Paraxial {
-    double y = 0, u = 0;
-};
-
-// Lies where matrices put it: refraction n' u' = n u - y (n' - n) c, reflection with n' = -n.
-TEST(Ghosts, OfASmallAngleLieWhereParaxialOpticsSays) {
-    const auto camera = ghostly("double-gauss-100mm-f2", Coating::Uncoated);
-    const GhostOptics optics(camera);
-    const Lens& lens = optics.lens();
-    const auto& surfaces = lens.prescription().surfaces;
-    const LensIndices<d4> n = lens.exact_indices(broadcast<d4>(kLineD_nm));
-    const double angle = 1e-4;
-    int tested = 0;
-    for (const GhostPair pair : optics.pairs()) {
-        Paraxial ray{0, angle};
-        double index = 1;  // of the opposite sign on the way back
-        int surface = 0, step = 1;
-        for (;;) {
-            const auto& s = lens.surfaces<double>()[size_t(surface)];
-            const bool mirrors = (step == 1 && surface == pair.first && index > 0) ||
-                                 (step == -1 && surface == pair.second);
-            const double into =
-                mirrors ? -index
-                        : std::copysign(
-                              n.of_medium[step == 1 ? s.medium_after : s.medium_before][0], index);
-            ray.u = (index * ray.u -
-                     ray.y * (into - index) * surfaces[size_t(surface)].curvature_1_mm) /
-                    into;
-            index = into;
-            if (mirrors) {
-                if (step == -1) {
-                    step = 1;
-                    index = std::fabs(index);
-                    surface += 1;
-                    ray.y += ray.u * surfaces[size_t(surface - 1)].thickness_mm;
-                    // From here on all surfaces let it through.
-                    for (; surface <= lens.last(); ++surface) {
-                        const auto& t = lens.surfaces<double>()[size_t(surface)];
-                        const double next = n.of_medium[t.medium_after][0];
-                        ray.u = (index * ray.u - ray.y * (next - index) *
-                                                     surfaces[size_t(surface)].curvature_1_mm) /
-                                next;
-                        index = next;
-                        ray.y += ray.u * (surface == lens.last()
-                                              ? camera->input().film_mm - lens.vertex_mm(surface)
-                                              : surfaces[size_t(surface)].thickness_mm);
-                    }
-                    break;
-                }
-                step = -1;
-            }
-            const int gap = step == 1 ? surface : surface - 1;
-            ray.y += step * ray.u * surfaces[size_t(gap)].thickness_mm;
-            surface += step;
-        }
-        LensRay<d4> traced;
-        traced.direction = {d4{}, broadcast<d4>(std::sin(angle)), broadcast<d4>(std::cos(angle))};
-        if (!trace_ghost<d4>(lens, pair, Towards::Film, Clip::No, n, traced,
-                             [](const auto&, const GhostStep&) {})[0])
-            continue;
-        const double to_film =
-            camera->input().film_mm - lens.vertex_mm(traced.counted_from) - traced.origin.z[0];
-        const double y =
-            traced.origin.y[0] + to_film * traced.direction.y[0] / traced.direction.z[0];
-        EXPECT_NEAR(y, ray.y, 1e-3 * std::fabs(ray.y) + 1e-7) << pair.first << "," << pair.second;
-        ++tested;
+// So pairs are searched side by side, and a pair anew only where the parts ended within it.
+TEST(GhostSearch, FindsTheSameForAnyNumberOfPartsThatItDoesNotUseUp) {
+    const GhostOptics optics(ghostly("takumar-50mm-f1.2", Coating::Uncoated));
+    const GhostSearch search(optics);
+    const GhostLamp lamp{{0, std::sin(0.2), -std::cos(0.2)}, 0.005, true, 1};
+    const auto rears = [&](uint32_t pair, int most_parts) {
+        const GhostSearch::Found found = search.find(pair, lamp, most_parts);
+        std::vector<std::tuple<float, float, float>> out;
+        for (const GhostRegion& r : found.regions) out.emplace_back(r.rear.x, r.rear.y, r.light);
+        return std::pair(found.parts, out);
+    };
+    int ended_soon = 0;
+    for (uint32_t pair = 0; pair < optics.pairs().size(); ++pair) {
+        const auto all = rears(pair, 1 << 30), with_one_left = rears(pair, all.first + 1),
+                   half = rears(pair, all.first / 2);
+        EXPECT_EQ(all, with_one_left);
+        EXPECT_LE(half.first, all.first);
+        ended_soon += half != all;
     }
-    EXPECT_GT(tested, 20);
+    EXPECT_GT(ended_soon, 10);
+}
+
+TEST(GhostRegions, AreTheSameWhateverRunsTheSearch) {
+    const auto camera = ghostly("double-gauss-100mm-f2", Coating::MgF2);
+    const GhostOptics optics(camera);
+    std::vector<SmallFeature> suns;
+    for (const double deg : {3, 8, 14}) suns.push_back(sun_at(deg, 0.005f));
+    const auto backwards = [](size_t count, const std::function<void(size_t)>& task) {
+        std::vector<std::jthread> threads;
+        for (const size_t parity : {0, 1})
+            threads.emplace_back([&, parity] {
+                for (size_t i = count; i-- > 0;)
+                    if (i % 2 == parity) task(i);
+            });
+    };
+    const GhostDraws one(optics, GhostRegions(optics, suns)),
+        other(optics, GhostRegions(optics, suns, backwards), backwards);
+    int drawn = 0;
+    for (uint32_t i = 0; i < 4000; ++i) {
+        const Sampler sampler(SamplerKind::Owen, 6, {0, 0, i});
+        const V2f film = camera->film_mm(sampler.get2(Dim::Film));
+        const auto a = one.draw(film, 0, sampler), b = other.draw(film, 0, sampler);
+        ASSERT_EQ(a.through_region.has_value(), b.through_region.has_value());
+        if (!a.through_region) continue;
+        ++drawn;
+        constexpr float kLineD = 0;
+        ASSERT_EQ(a.through_region->pair, b.through_region->pair);
+        ASSERT_EQ(a.through_region->rear_mm, b.through_region->rear_mm);
+        ASSERT_EQ(one.density(film, {&kLineD, 1}, *a.through_region),
+                  other.density(film, {&kLineD, 1}, *b.through_region));
+    }
+    EXPECT_GT(drawn, 500);
 }
 
 // What leaves the lens for the scene comes back the same way.

@@ -135,8 +135,8 @@ LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, cons
     LensSetup setup;
     if (asked.coating == Coating::Year && loaded.lens.prescription().year == 0)
         throw ArgumentError(loaded.name(), "",
-                            "its file states no year, by which ⟨coating⟩ year goes: give ⟨coating⟩ "
-                            "filed, or another");
+                            "its file states no year, by which ⟨coating⟩=year goes: give "
+                            "⟨coating⟩=filed or another");
     setup.stop_radius_mm = stop_radius_of(loaded, asked.fstop, notice);
     setup.fnumber = fnumber_of(loaded.lens, setup.stop_radius_mm);
     FocusedLens sharp = focused_at(loaded, focus_m, asked.focus_by, setup.stop_radius_mm);

@@ -286,6 +286,54 @@ TEST_F(ChartRun, LeavesOutAnAxisForWhichTheTimeIsTooShort) {
         << cases_[1].of.remarks.back();
 }
 
+// Of a lens whose light is mostly ghosts, so that few samples show it.
+TEST_F(ChartRun, OfGhostsLeavingThemOutIsOffByTheirLight) {
+    ChartRequest asked = request({ChartAxis::Ghosts});
+    asked.subject.request.scene = PETZVAL_ASSETS "/scenes/low_sun.glb";
+    asked.subject.request.camera.lens = "takumar-50mm-f1.2";
+    asked.subject.request.camera.coating = Coating::Uncoated;
+    asked.budget_s = 40;
+    run(asked);
+    ASSERT_EQ(cases_.size(), 1u);
+    const auto& methods = cases_[0].methods;
+    ASSERT_EQ(methods.size(), 2u);
+    const auto error = [&](size_t method) {
+        return methods[method].points.back().symmetric_mse().mean;
+    };
+    EXPECT_GT(error(0), 4 * error(1)) << error(0) << ' ' << error(1);
+    EXPECT_EQ(cases_[0].of.methods[0].scene.camera.coating, Coating::Uncoated);
+}
+
+TEST_F(ChartRun, GhostsAreThoseOfTheLensOfItsYearWhereNothingReflects) {
+    const RenderSetup first = set_up_render(request({}).subject.request, [](const std::string&) {});
+    const auto ghosts = [&](const std::string& lens, Coating coating) {
+        ChartSubject subject = request({}).subject;
+        subject.request.camera.lens = lens;
+        subject.request.camera.focus = FocusDistance{2};
+        subject.request.camera.coating = coating;
+        return chart_cases({ChartAxis::Ghosts}, subject,
+                           [&](const SceneRequest& one) {
+                               return set_up_view(first, one, [](const std::string&) {});
+                           })
+            .front();
+    };
+    const ChartCase year = ghosts("double-gauss-100mm-f2", Coating::Ideal),
+                    mgf2 = ghosts("double-gauss-100mm-f2", Coating::MgF2);
+    ASSERT_EQ(year.methods.size(), 2u);
+    EXPECT_EQ(year.methods[0].scene.camera.coating, Coating::Year);
+    EXPECT_EQ(year.methods[0].scene.camera.ghosts, GhostUse::Off);
+    EXPECT_EQ(year.methods[1].scene.camera.ghosts, GhostUse::Auto);
+    EXPECT_EQ(year.reference.scene.camera.ghosts, GhostUse::Auto);
+    EXPECT_EQ(mgf2.reference.scene.camera.coating, Coating::MgF2);
+    // Of a lens that nobody knows the year of, there is nothing to compare, and a reason.
+    std::ofstream(path("bare.json"))
+        << R"({"surfaces": [{"radius": 50, "thickness": 5, "semi_diameter": 8,
+            "medium": {"n": 1.5}}, {"radius": -50, "thickness": 48, "semi_diameter": 8, "stop": true, "medium": null}]})";
+    const ChartCase bare = ghosts(path("bare.json"), Coating::Ideal);
+    EXPECT_TRUE(bare.methods.empty());
+    EXPECT_NE(bare.remarks.back().find("states no year"), std::string::npos) << bare.remarks.back();
+}
+
 TEST_F(ChartRun, StopsAndKeepsOnlyWhatIsWhole) {
     for (const double at_s : {0.01, 1., 4.}) {  // in the reference's warm-up, in it, in the race
         stop_at_s_ = elapsed_s() + at_s;

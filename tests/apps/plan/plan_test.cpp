@@ -316,9 +316,9 @@ TEST_F(Plans, TheCommandRenders) {
     std::istringstream lines(run.out);
     std::vector<std::string> all;
     for (std::string line; std::getline(lines, line);) all.push_back(line);
-    const Words starts{"camera ", "spectral ",       "dispersion ", "precision ",
-                       "lights ", "samples ",        "targets ",    "error ",
-                       "time ",   "petzval render ", "or ",         "petzval render "};
+    const Words starts{"camera ",         "spectral ", "dispersion ",    "precision ", "ghosts ",
+                       "lights ",         "samples ",  "targets ",       "error ",     "time ",
+                       "petzval render ", "or ",       "petzval render "};
     ASSERT_EQ(all.size(), starts.size()) << run.out;
     for (size_t i = 0; i < all.size(); ++i) EXPECT_TRUE(all[i].starts_with(starts[i])) << all[i];
     Words long_render = options;
@@ -340,6 +340,51 @@ TEST_F(Plans, TheCommandRenders) {
         EXPECT_LT(std::sqrt(mse), 1.25 * 0.08) << "one picture, and what is predicted is the mean";
         EXPECT_GT(std::sqrt(mse), 0.08 / 4) << "a part of the picture may need more than others";
     }
+}
+
+TEST(PlanWords, GhostsAreALineWithAReason) {
+    const auto line = [](Coating coating, GhostUse use, const std::optional<GhostsFound>& found) {
+        Plan plan;
+        plan.requested.asked.camera.coating = coating;
+        plan.requested.asked.camera.ghosts = use;
+        plan.ghosts = found;
+        for (const PlanLine& one : lines_of(plan))
+            if (one.choice == "ghosts") return one.chosen + ": " + one.reason;
+        return std::string();
+    };
+    using enum GhostUse;
+    EXPECT_EQ(line(Coating::MgF2, Auto, {}), "off: no lens is traced");
+    EXPECT_EQ(line(Coating::MgF2, Off, GhostsFound{false, 3, {}}), "off: it was asked for");
+    EXPECT_EQ(line(Coating::Ideal, Auto, GhostsFound{false, 0, {}}),
+              "off: no surface reflects, and no lamp shines into the lens");
+    EXPECT_EQ(line(Coating::Ideal, Auto, GhostsFound{false, 3, {}}),
+              "off: no surface reflects; 3 lamps shine into the lens: ⟨coating⟩=year shows ghosts");
+    EXPECT_EQ(line(Coating::Year, Only, GhostsFound{true, 1, 1.}),
+              "only: surfaces reflect, with coating year; a lamp shines into the lens");
+    EXPECT_EQ(line(Coating::MgF2, Auto, GhostsFound{true, 0, 0.012}),
+              "auto: surfaces reflect, with coating mgf2, about 1.2 % of the picture's light");
+}
+
+TEST_F(Plans, TheShareOfGhostsIsThatOfARender) {
+    scene_ = PETZVAL_ASSETS "/scenes/low_sun.glb";
+    SceneRequest asked = request(scene_, {32, 18});
+    asked.camera.lens = "double-gauss-100mm-f2";
+    asked.camera.focus = FocusDistance{9};
+    asked.camera.coating = Coating::Uncoated;
+    const Plan plan = make_plan({asked, {}, {}, 0.1}, executor_, kSilent, 1e5);
+    ASSERT_TRUE(plan.ghosts && plan.ghosts->share);
+    EXPECT_TRUE(plan.ghosts->shown);
+    EXPECT_EQ(plan.ghosts->lamps, 1u);
+    const Picture long_render =
+        render({"--lens", "double-gauss-100mm-f2", "--focus", "9", "--method", "coating=uncoated",
+                "--aov", "ghosts", "--size", "32x18", "--spp", "512"});
+    double ghosts = 0, all = 0;
+    for (int y = 0; y < 18; ++y)
+        for (int x = 0; x < 32; ++x) {
+            ghosts += double(value_at(long_render, x, y, "ghosts.G"));
+            all += double(value_at(long_render, x, y, "G"));
+        }
+    EXPECT_NEAR(*plan.ghosts->share, ghosts / all, 0.25 * ghosts / all);
 }
 
 TEST_F(Plans, NeedlessOptionsAreLeftOutOfTheCommandAndOddWordsQuoted) {

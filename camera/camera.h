@@ -14,8 +14,8 @@
 
 namespace petzval {
 
-/// The pixel filter that drew a film point; nullptr: none is known, and a camera that asks for it
-/// splits its lanes instead.
+/// Pixel filter that drew a film point; nullptr: unknown, and lanes are split where it is asked
+/// for.
 struct PixelFilter {
     const Filter* filter = nullptr;
     V2f offset_px{0.f};  ///< of the film point from the pixel's centre, y down
@@ -40,8 +40,7 @@ struct CameraPath {
     /// Coverage and layers do without.
     float mis_weight = 1;
     m4 lanes;  ///< bands that share this ray
-    /// The ray depends on which lane is the hero (Bands::hero), which must then decide nothing
-    /// else.
+    /// The hero lane (Bands::hero) decides the ray, and must then decide nothing else.
     bool hero_decided = false;
     /// Aimed at a small lamp: alpha and layers do without.
     bool to_target = false;
@@ -73,8 +72,7 @@ struct LensLosses {
 };
 
 /// Camera paths of one film point. None: vignetted. 1: shared by all lanes. 2 to 4: split by
-/// dispersion. As many again may go to a target; all these again may go where a star comes from;
-/// and five may bring light of ghosts.
+/// dispersion. As many again may go to a target, all these again to a lamp's star, 5 be of ghosts.
 class CameraSample {
   public:
     static constexpr size_t kMostPaths = 21;

@@ -110,8 +110,8 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
         if (first.from.camera.traced)
             plan.ghosts = find_ghosts(compared, first, chosen.scene, best);
     }
-    plan.diffraction = diffraction_effect(first.view, request.scene.size, *first.prepared.scene,
-                                          *first.prepared.bvh);
+    plan.diffraction = diffraction_effect(first.view, request.scene.size,
+                                          double(first.from.camera.focus_m), first.prepared);
     plan.lights_asked = request.scene.light_choice.has_value();
     if (!plan.lights_asked) plan.lights = find_lights(compared, first, chosen.scene, best);
     if (plan.lights) plan.scene.light_choice = plan.lights->kind;

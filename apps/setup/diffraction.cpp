@@ -32,73 +32,88 @@ std::vector<SmallFeature> star_lamps(const Scene& scene, const Pose& pose, const
     return out;
 }
 
-}  // namespace
-
-std::string DiffractionEffect::text() const {
-    if (!has_iris) return "this camera has no iris, so that nothing is known of its diffraction";
-    return fmt::format("diffraction leaves {:.0f} % of the contrast of lines a pixel wide{}",
-                       100 * finest_contrast,
-                       lamp ? ", and a small lamp that shines in gets a star" : "");
-}
-
-DiffractionEffect diffraction_effect(const View& view, V2i frame_px, const Scene& scene,
-                                     const Bvh& bvh) {
-    const auto camera = stop_camera(view.still);
-    if (!camera) return {};
-    return {true, finest_contrast(*camera, frame_px),
-            !star_lamps(scene, pose_of(*camera), bvh).empty()};
-}
-
-std::optional<std::string> diffraction_doubt(const View& view, V2i frame_px, double focus_m) {
-    constexpr double least = 0.01, most_cycles_per_mm = 100;
-    const auto lens = std::dynamic_pointer_cast<const LensCamera>(view.still);
-    if (!lens) return std::nullopt;
+/// Errors of contrast on the axis, at 0.7 of the corner's field, and in the corner.
+std::optional<DiffractionEffect::Errors> errors_of(const std::shared_ptr<const LensCamera>& lens,
+                                                   V2i frame_px, double focus_m) {
+    constexpr double most_cycles_per_mm = 100;
+    const std::array<WeighedWavelength, 3> light{
+        {{kLineF_nm, 1 / 3.}, {kLineD_nm, 1 / 3.}, {kLineC_nm, 1 / 3.}}};
     const LensCameraInput& in = lens->input();
-    // Fields of the axis, of 0.7 of the corner's, and of the corner.
     std::array<StopPoint, 8> points;
     points.fill({V2f(0.5f), V2f(0.f), kMiddle_nm});
     points[1].film = V2f(0.5f + 0.35f), points[2].film = V2f(1.f);
     const std::array<StopRay, 8> rays = rays_through(StopCamera(lens), points);
-    std::vector<double> fields_deg{0};
-    for (const StopRay& ray : {rays[1], rays[2]})
-        if (ray.clear)
-            fields_deg.push_back(std::acos(std::clamp(-ray.direction.normalized().z, -1., 1.)) *
-                                 180 / std::numbers::pi);
-    const std::array<WeighedWavelength, 3> light{
-        {{kLineF_nm, 1 / 3.}, {kLineD_nm, 1 / 3.}, {kLineC_nm, 1 / 3.}}};
-    const double cycles_per_mm = std::min(most_cycles_per_mm, frame_px.x / (2 * in.film_width_mm));
-    const auto limits = diffraction_limits(
-        *in.lens, in.film_mm, focus_m > 0 ? focus_m * 1e3 : INFINITY, fields_deg, light,
-        cycles_per_mm,
-        [&](double x, double y) { return double(in.iris.transmits(V2f(float(x), float(y)))); });
-    if (!limits || !(limits->worst.contrast_error > least)) return std::nullopt;
-    const RaysAndPattern& worst = limits->worst;
-    return fmt::format(
-        "diffraction is added to the lens's own errors, which exceeds their sum by "
-        "waves: at {:.2g} degrees from the axis, contrast of {:.2g} cycles/mm is "
-        "{:.2f}, and by waves {:.2f}",
-        limits->field_deg, worst.cycles_per_mm, worst.by_rays_and_pattern, worst.by_waves);
+    std::optional<DiffractionEffect::Errors> out;
+    for (const StopRay& ray : {rays[0], rays[1], rays[2]}) {
+        if (!ray.clear) continue;
+        const double ahead = std::clamp(-ray.direction.normalized().z, -1., 1.);
+        const double field_deg = std::acos(ahead) * 180 / std::numbers::pi;
+        const auto limits = diffraction_limits(
+            *in.lens, in.film_mm, focus_m > 0 ? focus_m * 1e3 : INFINITY, {&field_deg, 1}, light,
+            std::min(most_cycles_per_mm, frame_px.x / (2 * in.film_width_mm)),
+            [&](double x, double y) {
+                return double(in.iris.transmits(V2f(float(x), float(y))));
+            });
+        if (!limits) continue;
+        if (!out) out.emplace();
+        out->with = std::max(out->with, limits->worst.contrast_error);
+        out->without = std::max(out->without, limits->worst.error_of_rays);
+    }
+    return out;
 }
 
-void add_diffraction(const SceneRequest& asked, const RenderSetup* like,
-                     const PreparedScene& prepared, View& view) {
-    if (asked.camera.diffraction == DiffractionUse::Off) return;
+}  // namespace
+
+std::string DiffractionEffect::text() const {
+    if (!has_iris) return "this camera has no iris, so that nothing is known of its diffraction";
+    std::string out = changes() ? fmt::format("lines a pixel wide keep {:.0f} % of their contrast",
+                                              100 * finest_contrast)
+                                : "lines a pixel wide keep their contrast";
+    if (lamp) out += ", and a small lamp that shines in gets a star";
+    if (errors && changes())
+        out += fmt::format("; added to the lens's own errors, contrast is off by up to {:.2f}, and "
+                           "without diffraction by up to {:.2f}",
+                           errors->with, errors->without);
+    return out;
+}
+
+DiffractionEffect diffraction_effect(const View& view, V2i frame_px, double focus_m,
+                                     const PreparedScene& prepared) {
+    const auto camera = stop_camera(view.still);
+    if (!camera) return {};
+    DiffractionEffect out{
+        true, finest_contrast(*camera, frame_px),
+        !star_lamps(*prepared.scene, pose_of(*camera), *prepared.bvh).empty()};
+    if (const auto* lens = std::get_if<std::shared_ptr<const LensCamera>>(&*camera))
+        out.errors = errors_of(*lens, frame_px, focus_m);
+    return out;
+}
+
+std::optional<std::string> add_diffraction(const SceneRequest& asked, double focus_m,
+                                           const RenderSetup* like, const PreparedScene& prepared,
+                                           View& view) {
+    if (asked.camera.diffraction == DiffractionUse::Off) return std::nullopt;
     const bool same = like && like->view.diffraction && like->prepared.bvh == prepared.bvh &&
                       like->from.asked.size == asked.size &&
                       has_same_rays(*view.still, *like->view.still);
+    std::optional<std::string> remark;
     if (same) {
         view.diffraction = like->view.diffraction;
     } else {
-        const Scene& scene = *prepared.scene;
-        if (!diffraction_effect(view, asked.size, scene, *prepared.bvh).matters()) return;
+        const DiffractionEffect effect = diffraction_effect(view, asked.size, focus_m, prepared);
+        if (effect.has_doubt())
+            remark = fmt::format("diffraction: {}{}", effect.text(),
+                                 effect.matters() ? "" : ": it is left out");
+        if (!effect.matters()) return remark;
         const StopCamera camera = *stop_camera(view.still);
         FilmSpread spread(camera);
         LampImages lamps(*target_camera(view.still), asked.size,
-                         star_lamps(scene, pose_of(camera), *prepared.bvh), spread);
+                         star_lamps(*prepared.scene, pose_of(camera), *prepared.bvh), spread);
         view.diffraction =
             std::make_shared<const Diffraction>(Diffraction{std::move(spread), std::move(lamps)});
     }
     view.camera = std::make_shared<DiffractionCamera>(std::move(view.camera), view.diffraction);
+    return remark;
 }
 
 }  // namespace petzval

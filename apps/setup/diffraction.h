@@ -2,7 +2,6 @@
 // Diffraction of a setup: whether it changes the picture, and the camera that has it.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -15,24 +14,37 @@ struct DiffractionEffect {
     bool has_iris = false;
     double finest_contrast = 1;  ///< what it leaves to gratings of two pixels, line d
     bool lamp = false;           ///< a small lamp shines in, which gets a star
-    /// Whether the picture changes by more than a tolerance of contrast.
-    [[nodiscard]] bool matters(double tolerance = kUsualTolerance) const {
-        return has_iris && (lamp || finest_contrast < 1 - tolerance);
+    /// Largest errors of contrast, against waves, of what a picture of so many pixels can show.
+    struct Errors {
+        double with = 0, without = 0;
+    };
+    std::optional<Errors> errors{};  ///< of a lens that is traced, in which rays err as well
+
+    /// Whether the picture changes by more than a hundredth of contrast, and towards the truth.
+    [[nodiscard]] bool matters() const {
+        return has_iris && (lamp || (changes() && !is_worse()));
     }
     /// Reason in words.
     [[nodiscard]] std::string text() const;
+    /// Whether errors are worth a remark where diffraction was asked for.
+    [[nodiscard]] bool has_doubt() const {
+        return errors && (matters() ? errors->with > kLeastContrast : changes());
+    }
+
+  private:
+    static constexpr double kLeastContrast = 0.01;
+    [[nodiscard]] bool changes() const { return finest_contrast < 1 - kLeastContrast; }
+    [[nodiscard]] bool is_worse() const { return errors && errors->with > errors->without; }
 };
-[[nodiscard]] DiffractionEffect diffraction_effect(const View&, V2i frame_px, const Scene&,
-                                                   const Bvh&);
+/// Effect on pictures of a view whose plane of focus lies so far from the entrance pupil. Up to a
+/// second of CPU time where a lens is traced.
+[[nodiscard]] DiffractionEffect diffraction_effect(const View&, V2i frame_px, double focus_m,
+                                                   const PreparedScene&);
 
-/// Remark on what is wrong where a traced lens errs by too much for rays and pattern to be told
-/// apart, in words; nothing where that is below a hundredth of contrast. focus_m: distance from the
-/// entrance pupil of what is sharp. Up to a second of CPU time.
-[[nodiscard]] std::optional<std::string> diffraction_doubt(const View&, V2i frame_px,
-                                                           double focus_m);
-
-/// Spreads the camera of a view by diffraction where that was asked for and matters. like: nullptr,
-/// or a setup from which it is taken where rays, scene and size are the same.
-void add_diffraction(const SceneRequest&, const RenderSetup* like, const PreparedScene&, View&);
+/// Spreads the camera of a view by diffraction where that was asked for and matters. Returns a
+/// remark on what is wrong then, if anything is. like: nullptr, or a setup from which it is taken
+/// where rays, scene and size are the same.
+std::optional<std::string> add_diffraction(const SceneRequest&, double focus_m,
+                                           const RenderSetup* like, const PreparedScene&, View&);
 
 }  // namespace petzval

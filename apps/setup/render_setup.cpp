@@ -229,7 +229,8 @@ std::shared_ptr<const Camera> moved(std::shared_ptr<const Camera> camera, const 
 /// The camera that renders, from the one that stands still: aimed at targets and moved by a
 /// shutter, where there are any. Returns the small features among which targets were looked for.
 std::vector<SmallFeature> compose_camera(const SceneRequest& asked, const RenderSetup* like,
-                                         const PreparedScene& prepared, View& view,
+                                         const PreparedScene& prepared, double focus_m, View& view,
+                                         const Notice& notice,
                                          const std::function<void()>& next_step) {
     std::vector<SmallFeature> features;
     view.camera = view.still;
@@ -246,7 +247,8 @@ std::vector<SmallFeature> compose_camera(const SceneRequest& asked, const Render
             aims->set_targets(view.targets);
             if (view.targets) view.camera = std::move(aims);
         }
-    add_diffraction(asked, like, prepared, view);
+    if (const auto remark = add_diffraction(asked, focus_m, like, prepared, view); remark && !like)
+        notice(*remark);
     add_ghosts(asked.camera, like, prepared, next_step, view);
     next_step();
     view.camera = moved(std::move(view.camera), view);
@@ -313,11 +315,8 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
             setup.view.observer, request.size));
     next_step();
     const std::vector<SmallFeature> lamps =
-        compose_camera(request, shares ? like : nullptr, prepared, setup.view, next_step);
-    if (!shares && request.camera.diffraction == DiffractionUse::Auto)
-        if (const auto doubt =
-                diffraction_doubt(setup.view, request.size, double(camera.report.focus_m)))
-            notice(*doubt);
+        compose_camera(request, shares ? like : nullptr, prepared, double(camera.report.focus_m),
+                       setup.view, notice, next_step);
     if (!shares)
         if (const auto remark = ghost_remark(request.camera, setup.view, lamps, *prepared.bvh))
             notice(*remark);

@@ -69,9 +69,9 @@ auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const
         return there;
     };
     out.by_pattern = weighed(here.displacement(v, lane_nm(bands, drawn)));
-    if (const float star = at.sampler.get1(Dim::StarPick); star < choice.chance)
-        out.to_lamp =
-            weighed(light_->lamps.draw(choice, at.film, star, at.sampler.get2(Dim::StarPoint)));
+    if (const float star = at.sampler.get1(Dim::DiffractionPick, 1); star < choice.chance)
+        out.to_lamp = weighed(
+            light_->lamps.draw(choice, at.film, star, at.sampler.get2(Dim::Diffraction, 1)));
     return out;
 }
 

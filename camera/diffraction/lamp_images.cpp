@@ -42,16 +42,18 @@ FilmCell around(const FilmCell& a, const FilmCell& b) {
             {std::max(a.last.x, b.last.x), std::max(a.last.y, b.last.y)}};
 }
 
-}  // namespace
+/// A lamp on the film.
+struct LampOnFilm {
+    FilmCell at;
+    double light = 0;  ///< share of rays that meet it, by area of the film, and its luminance
+    double nits = 0;
+};
 
-LampImages::LampImages(const TargetCamera& aims, V2i frame_px,
-                       std::span<const SmallFeature> features, const FilmSpread& spread) {
-    struct Found {
-        FilmCell at;
-        double light = 0;  ///< share of rays that meet it, by area of the film, and its luminance
-        double nits = 0;
-    };
-    std::vector<Found> found(features.size());
+/// Lamps on the film and around it, the brightest first.
+std::vector<LampOnFilm> lamps_on_film(const TargetCamera& aims, V2i frame_px,
+                                      std::span<const SmallFeature> lamps) {
+    std::vector<LampOnFilm> found(lamps.size());
+    for (size_t n = 0; n < lamps.size(); ++n) found[n].nits = lamps[n].radiance;
     for (int j = -kBeyond; j < kCells + kBeyond; ++j)
         for (int i = -kBeyond; i < kCells + kBeyond; ++i) {
             const FilmCell cell{V2f(float(i), float(j)) / float(kCells),
@@ -59,55 +61,62 @@ LampImages::LampImages(const TargetCamera& aims, V2i frame_px,
             const RayBundle bundle =
                 bundle_of(aims, cell, number_of(PrepassSeed::TargetCells), {i, j}, kRays);
             std::shared_ptr<const StopMap> map;
-            bool tried = false;
-            for (size_t n = 0; n < features.size(); ++n) {
-                if (!passes(bundle, features[n], kMargin)) continue;
-                if (!tried) map = aims.map(cell), tried = true;
-                if (!map) break;
-                const auto seen = aims.listed(target_of(features[n]), *map, frame_px);
+            for (size_t n = 0; n < lamps.size(); ++n) {
+                if (!passes(bundle, lamps[n], kMargin)) continue;
+                if (!map && !(map = aims.map(cell))) break;
+                const auto seen = aims.listed(target_of(lamps[n]), *map, frame_px);
                 if (!seen) continue;
                 FilmOctagon octagon = seen->seen_from;
                 for (size_t k = 0; k < 2; ++k)
                     octagon.low[k] += octagon.beyond, octagon.high[k] -= octagon.beyond;
                 const FilmCell part = octagon.within(cell);
                 if (!(part.area() > 0)) continue;
-                Found& f = found[n];
-                f.nits = features[n].radiance;
+                LampOnFilm& f = found[n];
                 f.at = f.light > 0 ? around(f.at, part) : part;
                 f.light += double(seen->met) * double(part.area()) * f.nits;
             }
         }
-    std::ranges::stable_sort(found,
-                             [](const Found& a, const Found& b) { return a.light > b.light; });
-    // Parts of one lamp have one star.
+    std::erase_if(found,
+                  [](const LampOnFilm& f) { return !(f.light > 0) || !std::isfinite(f.light); });
+    std::ranges::stable_sort(
+        found, [](const LampOnFilm& a, const LampOnFilm& b) { return a.light > b.light; });
+    return found;
+}
+
+/// The same with the parts of one lamp, which have one star, put together.
+std::vector<LampOnFilm> whole(std::vector<LampOnFilm> found) {
     for (size_t n = 0; n < found.size(); ++n)
-        for (size_t m = n + 1; m < found.size();)
-            if (found[m].light > 0 && overlap(found[n].at, found[m].at) &&
-                std::max(found[n].nits, found[m].nits) <
-                    kAlike * std::min(found[n].nits, found[m].nits)) {
-                found[n].at = around(found[n].at, found[m].at);
-                found[n].light += found[m].light;
+        for (size_t m = n + 1; m < found.size();) {
+            LampOnFilm &a = found[n], &b = found[m];
+            if (overlap(a.at, b.at) &&
+                std::max(a.nits, b.nits) < kAlike * std::min(a.nits, b.nits)) {
+                a.at = around(a.at, b.at);
+                a.light += b.light;
                 found.erase(found.begin() + ptrdiff_t(m));
                 m = n + 1;
             } else {
                 ++m;
             }
+        }
+    return found;
+}
+
+}  // namespace
+
+LampImages::LampImages(const TargetCamera& aims, V2i frame_px, std::span<const SmallFeature> lamps,
+                       const FilmSpread& spread) {
     // Corners of a box that are no lamp's are left to the pattern's own draws.
     constexpr float wider = 1.1f;
-    for (const Found& f : found) {
-        if (!(f.light > 0) || !std::isfinite(f.light) || images_.size() == kMost) continue;
-        Image image{(f.at.first + f.at.last) / 2,
-                    (f.at.last - f.at.first) / 2,
-                    float(f.light / double(f.at.area())),
-                    {},
-                    0};
+    for (const LampOnFilm& lamp : whole(lamps_on_film(aims, frame_px, lamps))) {
+        if (images_.size() == kMost) break;
+        const V2f half = (lamp.at.last - lamp.at.first) / 2;
         float pick = 0.5f;
-        image.spread = spread.at(image.middle, pick);
-        if (!image.spread.pattern) continue;
-        image.disc_radius =
-            wider * std::max(image.spread.frequency({image.half.x, 0}, kMiddle_nm).length(),
-                             image.spread.frequency({0, image.half.y}, kMiddle_nm).length());
-        images_.push_back(image);
+        const SpreadHere here = spread.at(lamp.at.first + half, pick);
+        if (!here.pattern) continue;
+        const float radius = std::max(here.frequency({half.x, 0}, kMiddle_nm).length(),
+                                      here.frequency({0, half.y}, kMiddle_nm).length());
+        images_.push_back({lamp.at.first + half, half, float(lamp.light / double(lamp.at.area())),
+                           here, wider * radius});
     }
     if (!images_.empty()) find_choices(frame_px);
 }

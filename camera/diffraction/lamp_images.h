@@ -22,7 +22,7 @@ class LampImages {
     LampImages() = default;
     /// Images of the brightest of some small lamps, up to half a frame beyond the edges. aims:
     /// whose targets the lamps may be; nothing is cast into the scene.
-    LampImages(const TargetCamera& aims, V2i frame_px, std::span<const SmallFeature>,
+    LampImages(const TargetCamera& aims, V2i frame_px, std::span<const SmallFeature> lamps,
                const FilmSpread&);
 
     [[nodiscard]] bool empty() const { return images_.empty(); }

@@ -79,7 +79,6 @@ class Iris {
     float rim2_mm2_ = 0;
     double reach_, area_, share_cut_ = 0;
     Shape shape_;
-    std::vector<std::vector<V2d>> contours_mm_;  ///< of a polygon
 };
 
 }  // namespace petzval

@@ -110,11 +110,6 @@ Iris::Iris(const ApertureShape& shape, double stop_radius_mm, ApertureScale scal
         stop_radius_mm *
         (scale == ApertureScale::Inscribed ? 1 / reach : std::sqrt(std::numbers::pi / area));
     shape_ = scaled(shape, mm, way);
-    if (const auto* polygon = std::get_if<Polygon>(&shape)) {
-        contours_mm_ = polygon->contours;
-        for (auto& contour : contours_mm_)
-            for (V2d& p : contour) p *= mm;
-    }
     reach_ = mm * reach;
     area_ = std::visit([](const auto& s) { return s.area_mm2(); }, shape_);
     share_cut_ = share_beyond(rim_radius_mm);
@@ -127,8 +122,9 @@ Iris::Iris(const ApertureShape& shape, double stop_radius_mm, ApertureScale scal
 
 std::vector<std::vector<V2d>> Iris::outline_mm() const {
     constexpr int corners = 720;
+    if (const auto* polygon = std::get_if<PolygonIris>(&shape_)) return polygon->contours_mm();
     const auto* round = std::get_if<Round>(&shape_);
-    if (!round) return contours_mm_;
+    if (!round) return {};
     std::vector<V2d> circle;
     for (int i = 0; i < corners; ++i) {
         const double angle = 2 * std::numbers::pi * i / corners;

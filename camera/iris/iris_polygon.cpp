@@ -85,7 +85,10 @@ PolygonRaster::PolygonRaster(const Polygon& polygon, std::span<const Trapezoid> 
 }
 
 PolygonIris::PolygonIris(const Polygon& polygon, PolygonDraw how)
-    : how_(how), trapezoids_(trapezoids(polygon)), raster_(polygon, trapezoids_) {
+    : how_(how),
+      contours_mm_(polygon.contours),
+      trapezoids_(trapezoids(polygon)),
+      raster_(polygon, trapezoids_) {
     for (const Trapezoid& t : trapezoids_) area_ += t.area();
     if (how == PolygonDraw::Formula) {
         const auto& p = polygon.contours[0];

@@ -71,6 +71,7 @@ class PolygonIris {
     [[nodiscard]] V2f lower() const { return raster_.lower(); }
     [[nodiscard]] V2f size() const { return raster_.size(); }
     [[nodiscard]] double area_mm2() const { return area_; }
+    [[nodiscard]] const std::vector<std::vector<V2d>>& contours_mm() const { return contours_mm_; }
     [[nodiscard]] double area_within_mm2(double radius_mm) const;
 
   private:
@@ -97,6 +98,7 @@ class PolygonIris {
     V2f corner_;
     V2f sides_[2];
     double area_ = 0;
+    std::vector<std::vector<V2d>> contours_mm_;
     std::vector<Trapezoid> trapezoids_;
     PolygonRaster raster_;
     std::vector<Triangle> triangles_;

@@ -32,10 +32,8 @@ enum class Dim : uint32_t {
     Time,                    ///< while the shutter is open
     GhostPick,               ///< the two surfaces that reflect, and whether a ray is sent
     GhostPoint,              ///< on the last surface of the lens
-    Diffraction,             ///< by how much a film point is displaced
-    DiffractionPick,         ///< the pattern and the wavelength that displace it
-    StarPick,                ///< the lamp whose star is looked for, and whether one is
-    StarPoint                ///< in the lamp's image
+    Diffraction,             ///< by how much a film point is displaced; 1: towards a lamp
+    DiffractionPick          ///< the pattern and the wavelength that displace it; 1: the lamp
 };
 
 struct SampleId {
@@ -53,8 +51,7 @@ struct SampleId {
 
 class Sampler {
   public:
-    /// Takes the place of one that is to come.
-    Sampler() = default;
+    Sampler() = default;  ///< takes the place of one that is to come
     Sampler(SamplerKind kind, uint32_t seed, SampleId id)
         : kind_(kind),
           key_(hash32(hash32(hash32(static_cast<uint32_t>(id.x)) +

@@ -184,7 +184,8 @@ TEST(Diffraction, StarDrawsFollowTheirDensity) {
         double ones = 0, light = 0, squares = 0;
         constexpr uint32_t count = 1 << 15;
         for (uint32_t i = 0; i < count; ++i) {
-            const V2f v = aim.draw(Sampler(SamplerKind::Owen, 3, {0, 0, i}).get2(Dim::StarPoint));
+            const V2f v =
+                aim.draw(Sampler(SamplerKind::Owen, 3, {0, 0, i}).get2(Dim::Diffraction, 1));
             EXPECT_LE((v - middle).length(), 1.001f * radius);
             const double density = double(aim.density(v));
             ASSERT_GT(density, 0);

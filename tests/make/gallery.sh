@@ -66,6 +66,28 @@ if is_wanted suns; then
     jpeg suns "${suns[@]}" --mosaic:pad=4 4x2
 fi
 
+# Stars of a sun by the iris, and of a street's lamps by iris and f-number.
+stars=()
+if is_wanted stars; then
+    for iris in circle polygon:5 polygon:6 polygon:8; do
+        render "star_$iris" 300x200 $scenes/low_sun.glb --background 900,1100,1500 --lens takumar-50mm-f1.2 --fstop 16 \
+            --aperture $iris --focus 9m --diffraction auto --exposure -11.2
+        stars+=("$out/star_$iris.png")
+    done
+    jpeg stars "${stars[@]}" --mosaic:pad=4 2x2
+fi
+street=()
+if is_wanted street; then
+    for stop in 1.4 8 22; do
+        for iris in circle polygon:5 polygon:6 polygon:7 polygon:8; do
+            render "street_${stop}_$iris" 210x140 $scenes/night_street.glb --background 0.01,0.014,0.03 \
+                --lens takumar-50mm-f1.2 --fstop $stop --aperture $iris --focus 20m --diffraction auto --exposure -3.2
+            street+=("$out/street_${stop}_$iris.png")
+        done
+    done
+    jpeg street "${street[@]}" --mosaic:pad=4 5x3
+fi
+
 # What is sharp, and how deep: ornaments at 1 m and 2 m through a thin lens that is 2 cm or 10 cm
 # wide. Names say radii of 0.1 and 0.5, as in the units of another scene; these keep their ratio of
 # five.

@@ -60,13 +60,14 @@ TEST_F(CliDiffraction, LeavesPicturesThatItDoesNotChange) {
             words.insert(words.end(), camera.begin(), camera.end());
             return render(words).pixels;
         };
-        scene_ = PETZVAL_ASSETS "/scenes/wheels.glb";
+        scene_ = PETZVAL_ASSETS "/scenes/gem.glb";
         EXPECT_EQ(channels("auto"), channels("off"));
     }
 }
 
-// Far from lamps stars add light where there was less; the sum over the frame is nearly kept.
+// Far from a sun stars add light where there was less; the sum over the frame is nearly kept.
 TEST_F(CliDiffraction, SpreadsTheLightOfLamps) {
+    scene_ = PETZVAL_ASSETS "/scenes/low_sun.glb";
     for (const Words& camera : {thin_, lens_}) {
         const auto light = [&](const char* use) {
             const Picture p = render(stopped_down(camera, {"--spp", "64", "--diffraction", use}));

@@ -316,9 +316,10 @@ TEST_F(Plans, TheCommandRenders) {
     std::istringstream lines(run.out);
     std::vector<std::string> all;
     for (std::string line; std::getline(lines, line);) all.push_back(line);
-    const Words starts{"camera ",         "spectral ", "dispersion ",    "precision ", "ghosts ",
-                       "lights ",         "samples ",  "targets ",       "error ",     "time ",
-                       "petzval render ", "or ",       "petzval render "};
+    const Words starts{"camera ",  "spectral ",      "dispersion ", "precision ",
+                       "ghosts ",  "diffraction ",   "lights ",     "samples ",
+                       "targets ", "error ",         "time ",       "petzval render ",
+                       "or ",      "petzval render "};
     ASSERT_EQ(all.size(), starts.size()) << run.out;
     for (size_t i = 0; i < all.size(); ++i) EXPECT_TRUE(all[i].starts_with(starts[i])) << all[i];
     Words long_render = options;

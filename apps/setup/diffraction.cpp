@@ -51,15 +51,27 @@ std::optional<DiffractionEffect::Errors> errors_of(const std::shared_ptr<const L
         const auto limits = diffraction_limits(
             *in.lens, in.film_mm, focus_m > 0 ? focus_m * 1e3 : INFINITY, {&field_deg, 1}, light,
             std::min(most_cycles_per_mm, frame_px.x / (2 * in.film_width_mm)),
-            [&](double x, double y) {
-                return double(in.iris.transmits(V2f(float(x), float(y))));
-            });
+            [&](double x, double y) { return double(in.iris.transmits(V2f(float(x), float(y)))); });
         if (!limits) continue;
         if (!out) out.emplace();
         out->with = std::max(out->with, limits->worst.contrast_error);
         out->without = std::max(out->without, limits->worst.error_of_rays);
     }
     return out;
+}
+
+/// Targets that are not sharp; nullptr: there are none.
+std::shared_ptr<const TargetGrid> blurred(const TargetGrid& all) {
+    auto out = std::make_shared<TargetGrid>(all);
+    bool any = false;
+    for (TargetCell& cell : out->lists) {
+        std::erase_if(cell.targets, [](const ListedTarget& t) { return t.is_sharp; });
+        float sum = 0;
+        for (const ListedTarget& t : cell.targets) sum += t.chance;
+        for (ListedTarget& t : cell.targets) t.chance /= sum;
+        any |= !cell.empty();
+    }
+    return any ? out : nullptr;
 }
 
 }  // namespace
@@ -71,9 +83,10 @@ std::string DiffractionEffect::text() const {
                                 : "lines a pixel wide keep their contrast";
     if (lamp) out += ", and a small lamp that shines in gets a star";
     if (errors && changes())
-        out += fmt::format("; added to the lens's own errors, contrast is off by up to {:.2f}, and "
-                           "without diffraction by up to {:.2f}",
-                           errors->with, errors->without);
+        out += fmt::format(
+            "; added to the lens's own errors, contrast is off by up to {:.2f}, and "
+            "without diffraction by up to {:.2f}",
+            errors->with, errors->without);
     return out;
 }
 
@@ -81,9 +94,8 @@ DiffractionEffect diffraction_effect(const View& view, V2i frame_px, double focu
                                      const PreparedScene& prepared) {
     const auto camera = stop_camera(view.still);
     if (!camera) return {};
-    DiffractionEffect out{
-        true, finest_contrast(*camera, frame_px),
-        !star_lamps(*prepared.scene, pose_of(*camera), *prepared.bvh).empty()};
+    DiffractionEffect out{true, finest_contrast(*camera, frame_px),
+                          !star_lamps(*prepared.scene, pose_of(*camera), *prepared.bvh).empty()};
     if (const auto* lens = std::get_if<std::shared_ptr<const LensCamera>>(&*camera))
         out.errors = errors_of(*lens, frame_px, focus_m);
     return out;
@@ -111,6 +123,11 @@ std::optional<std::string> add_diffraction(const SceneRequest& asked, double foc
                          star_lamps(*prepared.scene, pose_of(camera), *prepared.bvh), spread);
         view.diffraction =
             std::make_shared<const Diffraction>(Diffraction{std::move(spread), std::move(lamps)});
+    }
+    if (view.targets) {
+        auto aims = target_camera(view.still);
+        aims->set_targets(blurred(*view.targets));
+        view.camera = std::move(aims);
     }
     view.camera = std::make_shared<DiffractionCamera>(std::move(view.camera), view.diffraction);
     return remark;

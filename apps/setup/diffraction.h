@@ -21,9 +21,7 @@ struct DiffractionEffect {
     std::optional<Errors> errors{};  ///< of a lens that is traced, in which rays err as well
 
     /// Whether the picture changes by more than a hundredth of contrast, and towards the truth.
-    [[nodiscard]] bool matters() const {
-        return has_iris && (lamp || (changes() && !is_worse()));
-    }
+    [[nodiscard]] bool matters() const { return has_iris && (lamp || (changes() && !is_worse())); }
     /// Reason in words.
     [[nodiscard]] std::string text() const;
     /// Whether errors are worth a remark where diffraction was asked for.
@@ -44,6 +42,7 @@ struct DiffractionEffect {
 /// Spreads the camera of a view by diffraction where that was asked for and matters. Returns a
 /// remark on what is wrong then, if anything is. like: nullptr, or a setup from which it is taken
 /// where rays, scene and size are the same.
+/// Sharp targets are left to the stars, whose draws find them before the film point is moved.
 std::optional<std::string> add_diffraction(const SceneRequest&, double focus_m,
                                            const RenderSetup* like, const PreparedScene&, View&);
 

@@ -277,8 +277,9 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     const CameraModel model = choose_camera_model(
         request.camera, request.scene, request.scope, *prepared.cameras,
         static_cast<float>(request.size.x) / static_cast<float>(request.size.y));
-    SpectralSetup spectra =
-        set_up_spectra(request.spectral, scene, model.dispersive_lens(), notice);
+    SpectralSetup spectra = set_up_spectra(
+        request.spectral, scene, model.dispersive_lens(),
+        model.has_iris() && request.camera.diffraction == DiffractionUse::Auto, notice);
     setup.view.observer = std::move(spectra.observer);
     from.scale = std::move(spectra.scale);
     from.spectral = std::move(spectra.decision);

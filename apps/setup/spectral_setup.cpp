@@ -21,11 +21,12 @@ bool is(const std::string& name, std::string_view usual) {
 }
 
 SpectralDecision decide(const SpectralRequest& request, const Scene& scene,
-                        const std::string& dispersive_lens) {
+                        const std::string& dispersive_lens, bool diffracts) {
     SpectralDecision out;
     out.reasons = explicit_requests(request);
     if (!dispersive_lens.empty())
         out.reasons.push_back({WavelengthReason::Kind::Lens, dispersive_lens, ""});
+    if (diffracts) out.reasons.push_back({WavelengthReason::Kind::Diffraction, "", ""});
     for (WavelengthReason& reason : scene_reasons(scene)) out.reasons.push_back(std::move(reason));
     if (request.mode == SpectralMode::Auto) {
         out.wavelengths = !out.reasons.empty();
@@ -80,13 +81,14 @@ Matrix3 fitted(const SpectralRequest& request, const ObserverInput& in, const Ma
 }  // namespace
 
 SpectralSetup set_up_spectra(const SpectralRequest& request, const Scene& scene,
-                             const std::string& dispersive_lens, const Notice& notice) {
+                             const std::string& dispersive_lens, bool diffracts,
+                             const Notice& notice) {
     SpectralSetup setup;
     setup.scale = "RGB 1 = 1 nit of D65 white";
     // Names and files are checked in any mode: a typing error must not pass unnoticed.
     const SpectrumTable white = find_illuminant(request.illuminant);
     const auto response = find_response(request.response);
-    setup.decision = decide(request, scene, dispersive_lens);
+    setup.decision = decide(request, scene, dispersive_lens, diffracts);
     if (!setup.decision.wavelengths) {
         setup.metadata = {{"petzval:spectral", "rgb"}};
         return setup;

@@ -37,11 +37,11 @@ struct SpectralSetup {
 };
 
 /// Decides between RGB and wavelengths, and reads what the decision needs. dispersive_lens: the
-/// name of the camera's lens if its glass disperses, or nothing. `notice` gets warnings about
-/// glasses and how well a response was fitted. Throws InputError for a file that is not as it
-/// should be, ArgumentError for bins that a glass of the scene is not known for.
+/// name of the camera's lens if its glass disperses, or nothing. diffracts: its iris does. `notice`
+/// gets warnings about glasses and how well a response was fitted. Throws InputError for a file
+/// that is not as it should be, ArgumentError for bins that a glass of the scene is not known for.
 [[nodiscard]] SpectralSetup set_up_spectra(const SpectralRequest&, const Scene&,
-                                           const std::string& dispersive_lens,
+                                           const std::string& dispersive_lens, bool diffracts,
                                            const Notice& notice);
 
 }  // namespace petzval

@@ -23,6 +23,8 @@ std::string text_of(const WavelengthReason& reason) {
             return "⟨response⟩ is " + reason.what;
         case Kind::Lens:
             return fmt::format("lens {} disperses", reason.what);
+        case Kind::Diffraction:
+            return "the iris diffracts";
         case Kind::Glass:
             return fmt::format("{} disperses ({})", material, reason.what);
         case Kind::Metal:

@@ -19,6 +19,7 @@ struct WavelengthReason {
         Illuminant,   ///< another white is asked for
         Response,     ///< another sensor is asked for
         Lens,         ///< its glass disperses
+        Diffraction,  ///< at an iris, which is asked for
         Glass,        ///< a material's glass disperses
         Metal,        ///< a material's metal is a measured one
         Reflectance,  ///< a material's reflectance is a measured one

@@ -6,9 +6,6 @@
 namespace petzval {
 namespace {
 
-/// Displacement, in frames, up to which the pupil is as good as the same.
-constexpr float kSamePupil = 1.f / 256;
-
 void weigh(CameraSample& sample, const f4& lanes, float mis, bool to_target) {
     for (CameraPath& path : sample) {
         path.weight *= lanes;
@@ -28,50 +25,45 @@ float lane_nm(const Bands& bands, int lane) {
 
 // Both draws find light of all lanes: a lane's light is what is seen from the displaced point,
 // times the density of light aimed there to come here, over the density of the mean lane's draw and
-// of the lamps' together.
+// of the lamps' together. The first two differ by how wide cosines lie on the film here and there.
 auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const -> OfSample {
+    const FilmSpread& spread = light_->spread;
     OfSample out{{at.film, splat(1.f), 1.f}, {}};
-    const float node = at.sampler.get1(Dim::DiffractionPick);
-    float pick = node;
-    const SpreadHere here = light_->spread.at(at.film, pick);
-    if (!here.pattern) return out;
+    float pick = at.sampler.get1(Dim::DiffractionPick);
+    const auto [pattern, here] = spread.at(at.film, pick);
+    if (!pattern || !(here.per_film > 0)) return out;
     const int count = lane_count(bands.on);
     const float of_lane = pick * float(count);
     int drawn = 0, left = std::min(int(of_lane), count - 1);
     const float rest = std::min(of_lane - float(left), kOneMinus);
     while (!bands.on[drawn] || left-- > 0) ++drawn;
-    const V2f v = here.pattern->draw(rest, at.sampler.get2(Dim::Diffraction));
+    const V2f v = pattern->draw(rest, at.sampler.get2(Dim::Diffraction));
     static constexpr LampImages::Choice kNone;
     const LampImages::Choice& choice =
         light_->lamps.empty() ? kNone : light_->lamps.choice(at.film);
-    const auto densities = [&](const SpreadHere& spread, V2f by) {
-        f4 of_lanes{};
-        for (int i = 0; i < 4; ++i)
-            if (bands.on[i]) of_lanes[i] = spread.density(by, lane_nm(bands, i));
-        return of_lanes;
-    };
-    const auto weighed = [&](V2f by) {
-        Displaced there{at.film + by, f4{}, 0};
-        const f4 drawn_so = densities(here, by);
-        const float mean = hsum(drawn_so) / float(count);
-        const float both = mean + light_->lamps.density(choice, at.film, by);
-        if (!(both > 0) || !std::isfinite(both)) return there;
-        f4 aimed_there = drawn_so;
-        if (std::max(std::fabs(by.x), std::fabs(by.y)) > kSamePupil) {
-            float again = node;
-            const SpreadHere pupil = light_->spread.at(there.film, again);
-            if (!pupil.pattern) return there;
-            aimed_there = densities(pupil, by);
+    const auto weighed = [&](V2f film) {
+        Displaced moved{film, f4{}, 0};
+        const StopCosines::At there = spread.cosines(film);
+        f4 density{};
+        for (int i = 0; i < 4; ++i) {
+            if (!bands.on[i]) continue;
+            const float nm = lane_nm(bands, i);
+            density[i] = pattern->density(FilmSpread::frequency(here.cosines, there.cosines, nm)) *
+                         FilmSpread::per_film(there, nm);
         }
-        // Layers and coverage do without the lamps' share.
-        there.mis = mean > 0 ? mean / both : 1;
-        there.lanes = aimed_there / splat(both * there.mis);
-        return there;
+        const float mean = hsum(density) / float(count);
+        const float both = mean + light_->lamps.density(choice, here.cosines, film, there);
+        if (!(mean > 0) || !std::isfinite(both)) return moved;
+        moved.mis = mean / both;
+        moved.lanes = density * splat(here.per_film / (there.per_film * mean));
+        return moved;
     };
-    out.by_pattern = weighed(here.displacement(v, lane_nm(bands, drawn)));
+    const auto film = spread.film_of(here.cosines, v, lane_nm(bands, drawn));
+    out.by_pattern = film ? weighed(*film) : Displaced{at.film, f4{}, 0};
     if (const float star = at.sampler.get1(Dim::DiffractionPick, 1); star < choice.chance)
-        out.to_lamp = weighed(
-            light_->lamps.draw(choice, at.film, star, at.sampler.get2(Dim::Diffraction, 1)));
+        if (const auto place = light_->lamps.draw(choice, spread, here.cosines, star,
+                                                  at.sampler.get2(Dim::Diffraction, 1)))
+            out.to_lamp = weighed(*place);
     return out;
 }
 

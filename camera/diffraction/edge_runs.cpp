@@ -131,7 +131,20 @@ float FarPattern::density(V2f v) const {
     if (!(r >= radius_) || !std::isfinite(r)) return 0;
     float sum = even_ / (2 * kPi);
     const V2f direction = v / r;
-    for (const Lobe& lobe : lobes_) sum += lobe.share * lobe.per_radian(direction, r);
+    // Lobes of opposite sides follow each other.
+    for (size_t i = 0; i < lobes_.size(); i += 2) {
+        const Lobe& lobe = lobes_[i];
+        const float g = lobe.width / r;
+        if (!lobe.is_straight() || g >= kNarrow) {
+            for (const Lobe& side : {lobe, lobes_[i + 1]})
+                sum += side.share * side.per_radian(direction, r);
+            continue;
+        }
+        const float cosine = std::fabs(lobe.normal.dot(direction)),
+                    sine = lobe.normal.x * direction.y - lobe.normal.y * direction.x;
+        const float near = sqr(sine) / (1 + cosine) + g * g / 2, far = 1 + cosine;
+        sum += lobe.share * g * (near + far) / (near * far * 2 * kPi);
+    }
     return sum * radius_ / (r * r * r);
 }
 

@@ -2,7 +2,6 @@
 #include "camera/diffraction/film_spread.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace petzval {
 namespace {
@@ -133,48 +132,36 @@ NodeOptics optics_at(const StopCamera& camera, V2f film) {
 
 }  // namespace
 
-FilmSpread::FilmSpread(const StopCamera& camera) {
+FilmSpread::FilmSpread(const StopCamera& camera) : cosines_(camera) {
     const Iris& iris = iris_of(camera);
     patterns_.push_back(std::make_shared<const DiffractionPattern>(diffracting_pupil(iris)));
-    const NodeOptics middle = optics_at(camera, V2f(0.5f));
     for (int k = 0; k < kNodes * kNodes; ++k) {
-        const V2f film(float(k % kNodes) / (kNodes - 1), float(k / kNodes) / (kNodes - 1));
-        const NodeOptics here = optics_at(camera, film);
-        SpreadHere& node = nodes_.emplace_back();
-        // Of nodes that see nothing the displacements serve their neighbours still.
-        std::tie(node.by_x, node.by_y) =
-            here.sees ? std::tie(here.by_x, here.by_y) : std::tie(middle.by_x, middle.by_y);
+        const NodeOptics here =
+            optics_at(camera, {float(k % kNodes) / (kNodes - 1), float(k / kNodes) / (kNodes - 1)});
+        const DiffractionPattern*& node = nodes_.emplace_back(nullptr);
         if (!here.sees) continue;
-        node.pattern = patterns_.front().get();
+        node = patterns_.front().get();
         if (!here.passes) continue;
         const DiffractingPupil pupil = diffracting_pupil(iris, here.passes);
         if (pupil.is_whole) continue;
-        node.pattern = nullptr;
+        node = nullptr;
         if (!(pupil.area_mm2 > 0)) continue;
         patterns_.push_back(std::make_shared<const DiffractionPattern>(pupil));
-        node.pattern = patterns_.back().get();
+        node = patterns_.back().get();
     }
 }
 
 SpreadHere FilmSpread::at(V2f film, float& pick) const {
-    std::array<float, 2> above;
-    size_t first = 0, drawn = 0;
+    size_t drawn = 0;
     for (size_t k = 0; k < 2; ++k) {  // down, then right
         const float place = std::clamp(k == 0 ? film.y : film.x, 0.f, 1.f) * (kNodes - 1);
         const auto below = std::min(size_t(place), size_t(kNodes - 2));
-        above[k] = place - float(below);
-        const bool next = pick < above[k];
-        pick = std::min(next ? pick / above[k] : (pick - above[k]) / (1 - above[k]), kOneMinus);
-        first = first * kNodes + below;
+        const float above = place - float(below);
+        const bool next = pick < above;
+        pick = std::min(next ? pick / above : (pick - above) / (1 - above), kOneMinus);
         drawn = drawn * kNodes + below + next;
     }
-    const auto between = [&](V2f SpreadHere::*part) {
-        const auto row = [&](size_t at) {
-            return nodes_[at].*part * (1 - above[1]) + nodes_[at + 1].*part * above[1];
-        };
-        return row(first) * (1 - above[0]) + row(first + kNodes) * above[0];
-    };
-    return {nodes_[drawn].pattern, between(&SpreadHere::by_x), between(&SpreadHere::by_y)};
+    return {nodes_[drawn], cosines_.at(film)};
 }
 
 size_t FilmSpread::memory_bytes() const {

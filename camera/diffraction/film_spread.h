@@ -1,40 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spread of light over the film by diffraction: the pattern of each film point's pupil, in places
-// of the film.
+// Spread of light over the film by diffraction: the pattern of each film point's pupil.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "camera/diffraction/diffraction_pattern.h"
+#include "camera/diffraction/stop_cosines.h"
 #include "camera/targets/stop_camera.h"
 
 namespace petzval {
 
-/// Pattern of the light that is aimed at a point of the film. A frequency v of the pupil,
-/// cycles/mm, displaces light of a wavelength by wavelength_nm * (by_x * v.x + by_y * v.y), as
-/// FilmPoint counts places.
+/// Pattern of the light that comes to a point of the film.
 struct SpreadHere {
     const DiffractionPattern* pattern = nullptr;  ///< nullptr: no light comes through
-    V2f by_x{0.f}, by_y{0.f};
-
-    [[nodiscard]] V2f displacement(V2f v, float nm) const { return (by_x * v.x + by_y * v.y) * nm; }
-    [[nodiscard]] V2f frequency(V2f displacement, float nm) const {
-        return V2f(displacement.x * by_y.y - displacement.y * by_y.x,
-                   displacement.y * by_x.x - displacement.x * by_x.y) /
-               (determinant() * nm);
-    }
-    /// Area of the film for a unit of the plane of frequencies.
-    [[nodiscard]] float area(float nm) const { return std::fabs(determinant()) * nm * nm; }
-    /// Density with which light of a wavelength is displaced so, by area of the film.
-    [[nodiscard]] float density(V2f displacement, float nm) const {
-        return pattern->density(frequency(displacement, nm)) / area(nm);
-    }
-    [[nodiscard]] float determinant() const { return by_x.x * by_y.y - by_x.y * by_y.x; }
+    StopCosines::At here;
 };
 
-/// Spread of a camera, at nodes over the frame. Between nodes displacements are interpolated, and
-/// one of the patterns around is drawn.
+/// Spread of a camera. In cosines at the stop the pattern is the same about each film point, but
+/// for what rims leave of the iris: that is known at nodes over the frame, of which one is drawn.
 class FilmSpread {
   public:
     /// Patterns of line d, without aberrations: rays have those.
@@ -43,10 +27,27 @@ class FilmSpread {
     /// Spread of light for a film point; `pick` in [0, 1) draws the pattern and becomes such a
     /// number again.
     [[nodiscard]] SpreadHere at(V2f film, float& pick) const;
+    /// Frequency of the pupil, cycles/mm, for light of a wavelength that is aimed at one place, by
+    /// its cosines, and comes to another.
+    [[nodiscard]] static V2f frequency(V2f from, V2f to, float nm) {
+        return (to - from) / (nm * kNm_mm);
+    }
+    /// Film point that a frequency leads to; nothing where it lies far beyond the frame.
+    [[nodiscard]] std::optional<V2f> film_of(V2f from, V2f frequency, float nm) const {
+        return cosines_.film_of(from + frequency * (nm * kNm_mm));
+    }
+    /// Density of frequencies by area of the film at a place, for one of 1.
+    [[nodiscard]] static float per_film(const StopCosines::At& at, float nm) {
+        return at.per_film / sqr(nm * kNm_mm);
+    }
+    [[nodiscard]] StopCosines::At cosines(V2f film) const { return cosines_.at(film); }
     [[nodiscard]] size_t memory_bytes() const;
 
   private:
-    std::vector<SpreadHere> nodes_;
+    static constexpr float kNm_mm = 1e-6f;
+
+    StopCosines cosines_;
+    std::vector<const DiffractionPattern*> nodes_;
     std::vector<std::shared_ptr<const DiffractionPattern>> patterns_;  ///< of the nodes
 };
 

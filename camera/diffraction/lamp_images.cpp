@@ -25,6 +25,7 @@ constexpr float kBright = 0.1f;
 constexpr int kCell_px = 4, kMostChoices = 256;
 constexpr uint32_t kTried = 3;
 
+constexpr int kFine_px = 1 << 24;
 /// Ratio of luminances up to which things that overlap are parts of one lamp.
 constexpr double kAlike = 3;
 
@@ -50,7 +51,7 @@ struct LampOnFilm {
 };
 
 /// Lamps on the film and around it, the brightest first.
-std::vector<LampOnFilm> lamps_on_film(const TargetCamera& aims, V2i frame_px,
+std::vector<LampOnFilm> lamps_on_film(const TargetCamera& aims,
                                       std::span<const SmallFeature> lamps) {
     std::vector<LampOnFilm> found(lamps.size());
     for (size_t n = 0; n < lamps.size(); ++n) found[n].nits = lamps[n].radiance;
@@ -64,12 +65,10 @@ std::vector<LampOnFilm> lamps_on_film(const TargetCamera& aims, V2i frame_px,
             for (size_t n = 0; n < lamps.size(); ++n) {
                 if (!passes(bundle, lamps[n], kMargin)) continue;
                 if (!map && !(map = aims.map(cell))) break;
-                const auto seen = aims.listed(target_of(lamps[n]), *map, frame_px);
+                // As if pixels were so fine that no filter reaches beyond the image.
+                const auto seen = aims.listed(target_of(lamps[n]), *map, V2i(kFine_px));
                 if (!seen) continue;
-                FilmOctagon octagon = seen->seen_from;
-                for (size_t k = 0; k < 2; ++k)
-                    octagon.low[k] += octagon.beyond, octagon.high[k] -= octagon.beyond;
-                const FilmCell part = octagon.within(cell);
+                const FilmCell part = seen->seen_from.within(cell);
                 if (!(part.area() > 0)) continue;
                 LampOnFilm& f = found[n];
                 f.at = f.light > 0 ? around(f.at, part) : part;
@@ -107,21 +106,23 @@ LampImages::LampImages(const TargetCamera& aims, V2i frame_px, std::span<const S
                        const FilmSpread& spread) {
     // Corners of a box that are no lamp's are left to the pattern's own draws.
     constexpr float wider = 1.1f;
-    for (const LampOnFilm& lamp : whole(lamps_on_film(aims, frame_px, lamps))) {
+    for (const LampOnFilm& lamp : whole(lamps_on_film(aims, lamps))) {
         if (images_.size() == kMost) break;
         const V2f half = (lamp.at.last - lamp.at.first) / 2;
         float pick = 0.5f;
         const SpreadHere here = spread.at(lamp.at.first + half, pick);
         if (!here.pattern) continue;
-        const float radius = std::max(here.frequency({half.x, 0}, kMiddle_nm).length(),
-                                      here.frequency({0, half.y}, kMiddle_nm).length());
+        const auto away = [&](V2f by) {
+            const V2f edge = spread.cosines(lamp.at.first + half + by).cosines;
+            return FilmSpread::frequency(here.here.cosines, edge, kMiddle_nm).length();
+        };
         images_.push_back({lamp.at.first + half, half, float(lamp.light / double(lamp.at.area())),
-                           here, wider * radius});
+                           here, wider * std::max(away({half.x, 0}), away({0, half.y}))});
     }
-    if (!images_.empty()) find_choices(frame_px);
+    if (!images_.empty()) find_choices(frame_px, spread);
 }
 
-void LampImages::find_choices(V2i frame_px) {
+void LampImages::find_choices(V2i frame_px, const FilmSpread& spread) {
     const auto cells = [](int px) { return std::clamp(px / kCell_px, 1, kMostChoices); };
     cells_ = {cells(frame_px.x), cells(frame_px.y)};
     choices_.resize(size_t(cells_.x) * size_t(cells_.y));
@@ -129,7 +130,7 @@ void LampImages::find_choices(V2i frame_px) {
         for (uint32_t i = 0; i < kTried; ++i) {
             const V2f in_cell = Sampler(SamplerKind::Owen, 0, {0, int(k), i}).get2(Dim::Film);
             const V2f cell(float(k % size_t(cells_.x)), float(k / size_t(cells_.x)));
-            add_lights((cell + in_cell) / V2f(cells_), choices_[k]);
+            add_lights((cell + in_cell) / V2f(cells_), spread, choices_[k]);
         }
     std::vector<float> sums;
     for (const Choice& c : choices_) sums.push_back(c.sum);
@@ -138,22 +139,22 @@ void LampImages::find_choices(V2i frame_px) {
     for (Choice& c : choices_) c.chance = c.sum > 0 ? c.sum / (c.sum + *bright) : 0;
 }
 
-void LampImages::add_lights(V2f film, Choice& out) const {
-    constexpr int points = 3;
+void LampImages::add_lights(V2f film, const FilmSpread& spread, Choice& out) const {
+    constexpr int points = 8;
+    const V2f here = spread.cosines(film).cosines;
     for (size_t i = 0; i < images_.size(); ++i) {
         const Image& image = images_[i];
         const DiffractionPattern& pattern = *image.spread.pattern;
-        const V2f middle = image.frequency_from(film);
+        const V2f middle = FilmSpread::frequency(here, image.spread.here.cosines, kMiddle_nm);
         float share = 0;
         if (StarAim::can(pattern.far(), middle, image.disc_radius)) {
             share = pattern.far_share() * StarAim(pattern.far(), middle, image.disc_radius).share();
         } else {
+            const float side = 2 * image.disc_radius / points;
             for (int k = 0; k < points * points; ++k) {
-                const V2f at(float(k % points) - 1, float(k / points) - 1);
-                share += image.spread.density(
-                    image.middle + image.half * at * (2.f / points) - film, kMiddle_nm);
+                const V2f at(float(k % points) + 0.5f, float(k / points) + 0.5f);
+                share += pattern.density(middle + at * side - V2f(image.disc_radius)) * sqr(side);
             }
-            share *= 4 * image.half.x * image.half.y / (points * points);
         }
         if (!std::isfinite(share)) continue;
         out.light[i] += image.light * share;
@@ -161,36 +162,37 @@ void LampImages::add_lights(V2f film, Choice& out) const {
     }
 }
 
-V2f LampImages::draw(const Choice& choice, V2f film, float pick, V2f u) const {
+std::optional<V2f> LampImages::draw(const Choice& choice, const FilmSpread& spread, V2f cosines,
+                                    float pick, V2f u) const {
     float left = pick / choice.chance * choice.sum;
     size_t i = 0;
     while (i + 1 < images_.size() && left >= choice.light[i]) left -= choice.light[i++];
     const Image& image = images_[i];
     const FarPattern& far = image.spread.pattern->far();
-    const V2f middle = image.frequency_from(film);
+    const V2f middle = FilmSpread::frequency(cosines, image.spread.here.cosines, kMiddle_nm);
     if (StarAim::can(far, middle, image.disc_radius))
-        return image.spread.displacement(StarAim(far, middle, image.disc_radius).draw(u),
-                                         kMiddle_nm);
-    return image.middle + (u * 2.f - V2f(1.f)) * image.half - film;
+        return spread.film_of(cosines, StarAim(far, middle, image.disc_radius).draw(u), kMiddle_nm);
+    return image.middle + (u * 2.f - V2f(1.f)) * image.half;
 }
 
-float LampImages::density(const Choice& choice, V2f film, V2f displacement) const {
+float LampImages::density(const Choice& choice, V2f cosines, V2f place,
+                          const StopCosines::At& there) const {
     if (!(choice.sum > 0)) return 0;
     float sum = 0;
     for (size_t i = 0; i < images_.size(); ++i) {
         const Image& image = images_[i];
-        const FarPattern& far = image.spread.pattern->far();
         // A disc is wider than its image by little.
         constexpr float beside = 4;
-        const V2f to = film + displacement - image.middle;
+        const V2f to = place - image.middle;
         if (std::fabs(to.x) > beside * image.half.x && std::fabs(to.y) > beside * image.half.y)
             continue;
-        const V2f middle = image.frequency_from(film);
+        const FarPattern& far = image.spread.pattern->far();
+        const V2f middle = FilmSpread::frequency(cosines, image.spread.here.cosines, kMiddle_nm);
         if (StarAim::can(far, middle, image.disc_radius)) {
-            const V2f v = image.spread.frequency(displacement, kMiddle_nm);
-            if ((v - middle).length2() > sqr(image.disc_radius)) continue;
-            sum += choice.light[i] * StarAim(far, middle, image.disc_radius).density(v) /
-                   image.spread.area(kMiddle_nm);
+            const V2f v = FilmSpread::frequency(cosines, there.cosines, kMiddle_nm);
+            if ((v - middle).length2() > sqr(1.001f * image.disc_radius)) continue;
+            sum += choice.light[i] * StarAim(far, middle, image.disc_radius).density(v) *
+                   FilmSpread::per_film(there, kMiddle_nm);
         } else {
             if (std::fabs(to.x) <= image.half.x && std::fabs(to.y) <= image.half.y)
                 sum += choice.light[i] / (4 * image.half.x * image.half.y);

@@ -38,10 +38,13 @@ class LampImages {
         };
         return choices_[size_t(cell(film.y, cells_.y) * cells_.x + cell(film.x, cells_.x))];
     }
-    /// Displacement of a film point into the image of a lamp; pick in [0, chance).
-    [[nodiscard]] V2f draw(const Choice&, V2f film, float pick, V2f u) const;
-    /// Density of draw(), the chance included, by area of the film.
-    [[nodiscard]] float density(const Choice&, V2f film, V2f displacement) const;
+    /// Place in the image of a lamp, for a film point of these cosines; pick in [0, chance).
+    /// Nothing where that lies far beyond the frame.
+    [[nodiscard]] std::optional<V2f> draw(const Choice&, const FilmSpread&, V2f cosines, float pick,
+                                          V2f u) const;
+    /// Density of draw() at a place of these cosines, the chance included, by area of the film.
+    [[nodiscard]] float density(const Choice&, V2f cosines, V2f place,
+                                const StopCosines::At& there) const;
 
   private:
     struct Image {
@@ -49,13 +52,9 @@ class LampImages {
         float light;       ///< luminance, mean over the box
         SpreadHere spread;
         float disc_radius;  ///< about it in the plane of frequencies
-
-        [[nodiscard]] V2f frequency_from(V2f film) const {
-            return spread.frequency(middle - film, kMiddle_nm);
-        }
     };
-    void find_choices(V2i frame_px);
-    void add_lights(V2f film, Choice&) const;
+    void find_choices(V2i frame_px, const FilmSpread&);
+    void add_lights(V2f film, const FilmSpread&, Choice&) const;
 
     std::vector<Image> images_;
     V2i cells_{0, 0};

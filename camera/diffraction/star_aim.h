@@ -18,7 +18,7 @@ class StarAim {
     /// Whether a disc can be aimed at.
     [[nodiscard]] static bool can(const FarPattern& pattern, V2f middle, float disc_radius) {
         const float away = middle.length();
-        return away - disc_radius > pattern.radius() && away > 2 * disc_radius;
+        return away - disc_radius > pattern.radius() && away > 1.05f * disc_radius;
     }
     /// Share of the far light that falls on the disc, about.
     [[nodiscard]] float share() const { return share_; }

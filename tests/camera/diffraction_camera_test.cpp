@@ -109,11 +109,20 @@ TEST(DiffractionCamera, SpreadOfALensIsThatOfItsFNumber) {
         in.iris = Iris(Disk{}, radius);
         const auto lens = std::make_shared<LensCamera>(in);
         const double sine = std::sqrt(lens->irradiance(V2f(0.f), 4096) / std::numbers::pi);
-        float pick = 0.5f;
-        const SpreadHere here = FilmSpread(StopCamera(lens)).at(V2f(0.5f), pick);
-        const double mm_of_unit = double(here.by_x.length()) * in.film_width_mm;
-        EXPECT_NEAR(mm_of_unit / (1e-6 * radius / sine), 1, 0.005) << name;
-        EXPECT_NEAR(double(here.by_y.length()) * in.film_height_mm / mm_of_unit, 1, 0.002) << name;
+        const FilmSpread spread{StopCamera(lens)};
+        const V2f middle = spread.cosines(V2f(0.5f)).cosines;
+        const auto mm_of_unit = [&](V2f unit, double film_mm) {
+            return double((*spread.film_of(middle, unit, 500) - V2f(0.5f)).length()) * film_mm /
+                   500;
+        };
+        const double wanted = 1e-6 * radius / sine, x = mm_of_unit({20, 0}, in.film_width_mm) / 20;
+        EXPECT_NEAR(x / wanted, 1, 0.005) << name;
+        EXPECT_NEAR(mm_of_unit({0, 20}, in.film_height_mm) / 20 / x, 1, 0.002) << name;
+        // And back.
+        const V2f corner(0.03f, 0.98f);
+        const auto found = spread.film_of(spread.cosines(corner).cosines, V2f(0.f), 500);
+        ASSERT_TRUE(found) << name;
+        EXPECT_LT((*found - corner).length(), 1e-5f) << name;
     }
 }
 
@@ -161,9 +170,12 @@ TEST(DiffractionCamera, StarsHaveTheirLightWithDrawsTowardsLampsAndLoseTheirNois
         for (uint32_t i = 0; i < points; ++i) {
             const V2f at = V2f(0.5f) + uniform_disk(sampler_of(i).get2(Dim::Lens)) * disc;
             float pick = 0.5f;
-            const SpreadHere there = spread.at(at, pick);
-            for (int lane = 0; lane < 4; ++lane)
-                exact += double(there.density(at - film, kFourLines.nm[lane])) / points;
+            const auto [pattern, here] = spread.at(film, pick);
+            for (int lane = 0; lane < 4; ++lane) {
+                const float nm = kFourLines.nm[lane];
+                const V2f v = FilmSpread::frequency(here.cosines, spread.cosines(at).cosines, nm);
+                exact += double(pattern->density(v) * FilmSpread::per_film(here, nm)) / points;
+            }
         }
         exact *= std::numbers::pi * double(disc.x * disc.y);
         constexpr uint32_t count = 1 << 16;

@@ -132,7 +132,8 @@ double spectra_ms(const fs::path& scene) {
     GltfFile file = load_gltf(scene);
     SpectralRequest request;
     request.mode = SpectralMode::Wavelengths;
-    return ms_of([&] { static_cast<void>(set_up_spectra(request, file.scene, "", kSilent)); });
+    return ms_of(
+        [&] { static_cast<void>(set_up_spectra(request, file.scene, "", false, kSilent)); });
 }
 
 int run(int runs) {

@@ -121,15 +121,18 @@ std::optional<std::string> add_diffraction(const SceneRequest& asked, double foc
         FilmSpread spread(camera);
         LampImages lamps(*target_camera(view.still), asked.size,
                          star_lamps(*prepared.scene, pose_of(camera), *prepared.bvh), spread);
-        view.diffraction =
-            std::make_shared<const Diffraction>(Diffraction{std::move(spread), std::move(lamps)});
+        const float shared = shared_frequency(spread, asked.size);
+        view.diffraction = std::make_shared<const Diffraction>(
+            Diffraction{std::move(spread), std::move(lamps), shared});
     }
+    std::shared_ptr<const Camera> far = view.still;
     if (view.targets) {
         auto aims = target_camera(view.still);
         aims->set_targets(blurred(*view.targets));
-        view.camera = std::move(aims);
+        far = std::move(aims);
     }
-    view.camera = std::make_shared<DiffractionCamera>(std::move(view.camera), view.diffraction);
+    view.camera = std::make_shared<DiffractionCamera>(std::move(view.camera), std::move(far),
+                                                      view.diffraction);
     return remark;
 }
 

@@ -42,7 +42,8 @@ struct DiffractionEffect {
 /// Spreads the camera of a view by diffraction where that was asked for and matters. Returns a
 /// remark on what is wrong then, if anything is. like: nullptr, or a setup from which it is taken
 /// where rays, scene and size are the same.
-/// Sharp targets are left to the stars, whose draws find them before the film point is moved.
+/// Where displacements are weighed, sharp targets, which move the film point, are left to
+/// the stars.
 std::optional<std::string> add_diffraction(const SceneRequest&, double focus_m,
                                            const RenderSetup* like, const PreparedScene&, View&);
 

@@ -41,9 +41,16 @@ auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const
     static constexpr LampImages::Choice kNone;
     const LampImages::Choice& choice =
         light_->lamps.empty() ? kNone : light_->lamps.choice(at.film);
-    const auto weighed = [&](V2f film) {
-        Displaced moved{film, f4{}, 0};
-        const StopCosines::At there = spread.cosines(film);
+    const auto film = spread.film_of(here.cosines, v, lane_nm(bands, drawn));
+    const float shared = light_->shared;
+    if (v.length2() < sqr(shared)) {
+        if (film) out.by_pattern.film = *film;
+    } else {
+        out.by_pattern = {at.film, f4{}, 0, true};
+    }
+    const auto weighed = [&](V2f place) {
+        Displaced moved{place, f4{}, 0, true};
+        const StopCosines::At there = spread.cosines(place);
         f4 density{};
         for (int i = 0; i < 4; ++i) {
             if (!bands.on[i]) continue;
@@ -52,14 +59,13 @@ auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const
                          FilmSpread::per_film(there, nm);
         }
         const float mean = hsum(density) / float(count);
-        const float both = mean + light_->lamps.density(choice, here.cosines, film, there);
+        const float both = mean + light_->lamps.density(choice, here.cosines, place, there);
         if (!(mean > 0) || !std::isfinite(both)) return moved;
         moved.mis = mean / both;
         moved.lanes = density * splat(here.per_film / (there.per_film * mean));
         return moved;
     };
-    const auto film = spread.film_of(here.cosines, v, lane_nm(bands, drawn));
-    out.by_pattern = film ? weighed(*film) : Displaced{at.film, f4{}, 0};
+    if (out.by_pattern.is_far && film) out.by_pattern = weighed(*film);
     if (const float star = at.sampler.get1(Dim::DiffractionPick, 1); star < choice.chance)
         if (const auto place = light_->lamps.draw(choice, spread, here.cosines, star,
                                                   at.sampler.get2(Dim::Diffraction, 1)))
@@ -69,33 +75,47 @@ auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const
 
 void DiffractionCamera::sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
                                    std::span<CameraSample> out) const {
-    std::array<FilmPoint, kMostFilmPoints> moved, to_lamps;
-    std::array<OfSample, kMostFilmPoints> of;
-    std::array<Bands, kMostFilmPoints> bands_to_lamps;
-    std::array<size_t, kMostFilmPoints> whose{};
-    size_t count = 0;
+    // A batch of film points, those whose samples it finds, and what they are displaced by.
+    struct Part {
+        std::array<FilmPoint, kMostFilmPoints> points;
+        std::array<Bands, kMostFilmPoints> bands;
+        std::array<size_t, kMostFilmPoints> whose;
+        std::array<Displaced, kMostFilmPoints> moved;
+        size_t count = 0;
+
+        void add(const FilmPoint& point, const Bands& of, size_t i, const Displaced& by) {
+            points[count] = point, bands[count] = of, whose[count] = i, moved[count] = by;
+            points[count++].film = by.film;
+        }
+    };
+    Part near, far, stars;
     for (size_t i = 0; i < points.size(); ++i) {
-        of[i] = displaced(points[i], bands[i]);
-        moved[i] = points[i];
-        moved[i].film = of[i].by_pattern.film;
-        if (!of[i].to_lamp) continue;
-        to_lamps[count] = points[i];
-        to_lamps[count].film = of[i].to_lamp->film;
-        bands_to_lamps[count] = bands[i];
-        whose[count++] = i;
+        const OfSample of = displaced(points[i], bands[i]);
+        (of.by_pattern.is_far ? far : near).add(points[i], bands[i], i, of.by_pattern);
+        if (of.to_lamp) stars.add(points[i], bands[i], i, *of.to_lamp);
     }
-    rays_->sample_all({moved.data(), points.size()}, bands, out);
-    for (size_t i = 0; i < points.size(); ++i)
-        weigh(out[i], of[i].by_pattern.lanes, of[i].by_pattern.mis, false);
-    if (count == 0) return;
-    std::array<CameraSample, kMostFilmPoints> stars;
-    rays_->sample_all({to_lamps.data(), count}, {bands_to_lamps.data(), count},
-                      {stars.data(), count});
-    for (size_t k = 0; k < count; ++k) {
-        const Displaced& lamp = *of[whose[k]].to_lamp;
-        weigh(stars[k], lamp.lanes, lamp.mis, true);
-        for (const CameraPath& path : stars[k]) out[whose[k]].add() = path;
+    for (const Part* part : {&near, &far, &stars}) {
+        if (part->count == 0) continue;
+        std::array<CameraSample, kMostFilmPoints> found;
+        (part == &near ? rays_ : far_)
+            ->sample_all({part->points.data(), part->count}, {part->bands.data(), part->count},
+                         {found.data(), part->count});
+        for (size_t k = 0; k < part->count; ++k) {
+            const Displaced& by = part->moved[k];
+            weigh(found[k], by.lanes, by.mis, part == &stars);
+            CameraSample& sample = out[part->whose[k]];
+            if (part == &stars)
+                for (const CameraPath& path : found[k]) sample.add() = path;
+            else
+                sample = found[k];
+        }
     }
+}
+
+float shared_frequency(const FilmSpread& spread, V2i frame_px) {
+    constexpr float shared_px = 1.f / 3;
+    const float px = 1 / std::sqrt(float(frame_px.x) * float(frame_px.y));
+    return shared_px * px * std::sqrt(FilmSpread::per_film(spread.cosines(V2f(0.5f)), kMiddle_nm));
 }
 
 }  // namespace petzval

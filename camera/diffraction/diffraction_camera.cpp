@@ -55,8 +55,9 @@ auto DiffractionCamera::displaced(const FilmPoint& at, const Bands& bands) const
         for (int i = 0; i < 4; ++i) {
             if (!bands.on[i]) continue;
             const float nm = lane_nm(bands, i);
-            density[i] = pattern->density(FilmSpread::frequency(here.cosines, there.cosines, nm)) *
-                         FilmSpread::per_film(there, nm);
+            const V2f by = FilmSpread::frequency(here.cosines, there.cosines, nm);
+            if (by.length2() < sqr(shared)) continue;
+            density[i] = pattern->density(by) * FilmSpread::per_film(there, nm);
         }
         const float mean = hsum(density) / float(count);
         const float both = mean + light_->lamps.density(choice, here.cosines, place, there);

@@ -173,6 +173,31 @@ Estimate light_at(const Camera& camera, V2f film, uint32_t count) {
     return {sum / count, (squares - sum * sum / count) / count / count};
 }
 
+// All light that a sun sends to a part of a coarse picture is there once: within it and beside it.
+TEST(DiffractionCamera, StarsOfCoarsePixelsHaveTheirLightOnce) {
+    const auto rays = thin_lens(regular_polygon(5));
+    const FilmSpread spread(*stop_camera(rays));
+    const std::array lamps{sun()};
+    const LampImages images(*target_camera(rays), {48, 32}, lamps, spread);
+    const auto light = [&](const DiffractionCamera& camera) {
+        constexpr uint32_t count = 1 << 18;
+        double sum = 0;
+        for (uint32_t i = 0; i < count; ++i) {
+            const Sampler sampler = sampler_of(i);
+            const V2f film = V2f(0.5f) + (sampler.get2(Dim::Film) - V2f(0.5f)) * V2f(0.1f, 0.15f);
+            for (const CameraPath& path : camera.sample({film, sampler}, kFourLines))
+                if (path.ray.direction.z < -std::cos(0.003f))
+                    sum += double(hsum(path.weight) * path.mis_weight) / count;
+        }
+        return sum;
+    };
+    const double plain = light(diffracting(rays, {}, {48, 32})),
+                 aimed = light(diffracting(rays, images, {48, 32})),
+                 weighed = light(diffracting(rays, images));
+    EXPECT_NEAR(aimed / plain, 1, 0.02);
+    EXPECT_NEAR(weighed / plain, 1, 0.02);
+}
+
 // Against the pattern's own density, summed over the sun's disc.
 TEST(DiffractionCamera, StarsHaveTheirLightWithDrawsTowardsLampsAndLoseTheirNoise) {
     const auto rays = thin_lens(regular_polygon(5));

@@ -84,8 +84,8 @@ std::string DiffractionEffect::text() const {
     if (lamp) out += ", and a small lamp that shines in gets a star";
     if (errors && changes())
         out += fmt::format(
-            "; added to the lens's own errors, contrast is off by up to {:.2f}, and "
-            "without diffraction by up to {:.2f}",
+            "; added to the lens's own errors, contrast is off by {:.2f} in the worst of three "
+            "places, and without diffraction by {:.2f}",
             errors->with, errors->without);
     return out;
 }
@@ -105,8 +105,8 @@ std::optional<std::string> add_diffraction(const SceneRequest& asked, double foc
                                            const RenderSetup* like, const PreparedScene& prepared,
                                            View& view) {
     if (asked.camera.diffraction == DiffractionUse::Off) return std::nullopt;
-    const bool same = like && like->view.diffraction && like->prepared.bvh == prepared.bvh &&
-                      like->from.asked.size == asked.size &&
+    const bool same = like && like->from.asked.camera.diffraction == DiffractionUse::Auto &&
+                      like->prepared.bvh == prepared.bvh && like->from.asked.size == asked.size &&
                       has_same_rays(*view.still, *like->view.still);
     std::optional<std::string> remark;
     if (same) {
@@ -125,6 +125,7 @@ std::optional<std::string> add_diffraction(const SceneRequest& asked, double foc
         view.diffraction = std::make_shared<const Diffraction>(
             Diffraction{std::move(spread), std::move(lamps), shared});
     }
+    if (!view.diffraction) return remark;
     std::shared_ptr<const Camera> far = view.still;
     if (view.targets) {
         auto aims = target_camera(view.still);

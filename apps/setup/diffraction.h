@@ -14,7 +14,8 @@ struct DiffractionEffect {
     bool has_iris = false;
     double finest_contrast = 1;  ///< what it leaves to gratings of two pixels, line d
     bool lamp = false;           ///< a small lamp shines in, which gets a star
-    /// Largest errors of contrast, against waves, of what a picture of so many pixels can show.
+    /// Errors of contrast against waves, the larger of three places of the film: of what a picture
+    /// of so many pixels can show, up to 100 cycles/mm.
     struct Errors {
         double with = 0, without = 0;
     };
@@ -41,9 +42,8 @@ struct DiffractionEffect {
 
 /// Spreads the camera of a view by diffraction where that was asked for and matters. Returns a
 /// remark on what is wrong then, if anything is. like: nullptr, or a setup from which it is taken
-/// where rays, scene and size are the same.
-/// Where displacements are weighed, sharp targets, which move the film point, are left to
-/// the stars.
+/// where rays, scene and size are the same. Where displacements are weighed, sharp targets, which
+/// move the film point, are left to the stars.
 std::optional<std::string> add_diffraction(const SceneRequest&, double focus_m,
                                            const RenderSetup* like, const PreparedScene&, View&);
 

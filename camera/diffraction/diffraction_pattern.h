@@ -16,6 +16,7 @@ namespace petzval {
 /// in cells of an eighth of the finest fringe; farther out fringes are averaged (FarPattern).
 class DiffractionPattern {
   public:
+    /// Of a pupil that lets light through.
     explicit DiffractionPattern(const DiffractingPupil&);
 
     /// Frequency drawn by the density: u in [0, 1)^2 and pick in [0, 1).
@@ -29,9 +30,6 @@ class DiffractionPattern {
     /// Share of the light beyond the table, and where it goes.
     [[nodiscard]] float far_share() const { return far_share_; }
     [[nodiscard]] const FarPattern& far() const { return far_; }
-    [[nodiscard]] size_t memory_bytes() const {
-        return size_t{near_.width()} * near_.height() * sizeof(uint32_t);
-    }
 
   private:
     Piecewise2D near_;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <numeric>
 
 namespace petzval {
 namespace {

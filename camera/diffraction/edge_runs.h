@@ -2,7 +2,6 @@
 // Edges of a pupil, and the light that they send far from the image point: the spikes of a star.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 

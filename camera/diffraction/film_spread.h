@@ -41,7 +41,6 @@ class FilmSpread {
         return at.per_film / sqr(nm * kNm_mm);
     }
     [[nodiscard]] StopCosines::At cosines(V2f film) const { return cosines_.at(film); }
-    [[nodiscard]] size_t memory_bytes() const;
 
   private:
     static constexpr float kNm_mm = 1e-6f;

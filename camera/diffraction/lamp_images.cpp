@@ -7,6 +7,7 @@
 #include "camera/diffraction/star_aim.h"
 #include "camera/ray_bundle.h"
 #include "camera/setup/film_region.h"
+#include "camera/targets/target_grid.h"
 #include "core/sampling/prepass_seed.h"
 #include "core/sampling/sampler.h"
 
@@ -25,14 +26,10 @@ constexpr float kBright = 0.1f;
 constexpr int kCell_px = 4, kMostChoices = 256;
 constexpr uint32_t kTried = 3;
 
+/// Pixels so fine that no filter reaches beyond an image.
 constexpr int kFine_px = 1 << 24;
 /// Ratio of luminances up to which things that overlap are parts of one lamp.
 constexpr double kAlike = 3;
-
-Target target_of(const SmallFeature& lamp) {
-    return {lamp.centre, lamp.at_infinity ? std::tan(lamp.reach_m) : lamp.reach_m,
-            lamp.at_infinity};
-}
 
 bool overlap(const FilmCell& a, const FilmCell& b) {
     return a.first.x < b.last.x && b.first.x < a.last.x && a.first.y < b.last.y &&
@@ -65,7 +62,6 @@ std::vector<LampOnFilm> lamps_on_film(const TargetCamera& aims,
             for (size_t n = 0; n < lamps.size(); ++n) {
                 if (!passes(bundle, lamps[n], kMargin)) continue;
                 if (!map && !(map = aims.map(cell))) break;
-                // As if pixels were so fine that no filter reaches beyond the image.
                 const auto seen = aims.listed(target_of(lamps[n]), *map, V2i(kFine_px));
                 if (!seen) continue;
                 const FilmCell part = seen->seen_from.within(cell);
@@ -147,8 +143,8 @@ void LampImages::add_lights(V2f film, const FilmSpread& spread, Choice& out) con
         const DiffractionPattern& pattern = *image.spread.pattern;
         const V2f middle = FilmSpread::frequency(here, image.spread.here.cosines, kMiddle_nm);
         float share = 0;
-        if (StarAim::can(pattern.far(), middle, image.disc_radius)) {
-            share = pattern.far_share() * StarAim(pattern.far(), middle, image.disc_radius).share();
+        if (const auto aim = StarAim::at(pattern.far(), middle, image.disc_radius)) {
+            share = pattern.far_share() * aim->share();
         } else {
             const float side = 2 * image.disc_radius / points;
             for (int k = 0; k < points * points; ++k) {
@@ -170,8 +166,8 @@ std::optional<V2f> LampImages::draw(const Choice& choice, const FilmSpread& spre
     const Image& image = images_[i];
     const FarPattern& far = image.spread.pattern->far();
     const V2f middle = FilmSpread::frequency(cosines, image.spread.here.cosines, kMiddle_nm);
-    if (StarAim::can(far, middle, image.disc_radius))
-        return spread.film_of(cosines, StarAim(far, middle, image.disc_radius).draw(u), kMiddle_nm);
+    if (const auto aim = StarAim::at(far, middle, image.disc_radius))
+        return spread.film_of(cosines, aim->draw(u), kMiddle_nm);
     return image.middle + (u * 2.f - V2f(1.f)) * image.half;
 }
 
@@ -188,15 +184,12 @@ float LampImages::density(const Choice& choice, V2f cosines, V2f place,
             continue;
         const FarPattern& far = image.spread.pattern->far();
         const V2f middle = FilmSpread::frequency(cosines, image.spread.here.cosines, kMiddle_nm);
-        if (StarAim::can(far, middle, image.disc_radius)) {
-            const V2f v = FilmSpread::frequency(cosines, there.cosines, kMiddle_nm);
-            if ((v - middle).length2() > sqr(1.001f * image.disc_radius)) continue;
-            sum += choice.light[i] * StarAim(far, middle, image.disc_radius).density(v) *
+        if (const auto aim = StarAim::at(far, middle, image.disc_radius))
+            sum += choice.light[i] *
+                   aim->density(FilmSpread::frequency(cosines, there.cosines, kMiddle_nm)) *
                    FilmSpread::per_film(there, kMiddle_nm);
-        } else {
-            if (std::fabs(to.x) <= image.half.x && std::fabs(to.y) <= image.half.y)
-                sum += choice.light[i] / (4 * image.half.x * image.half.y);
-        }
+        else if (std::fabs(to.x) <= image.half.x && std::fabs(to.y) <= image.half.y)
+            sum += choice.light[i] / (4 * image.half.x * image.half.y);
     }
     return choice.chance * sum / choice.sum;
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <optional>
 
 #include "camera/diffraction/edge_runs.h"
 
@@ -12,13 +12,14 @@ namespace petzval {
 /// Points of a disc in the plane of spatial frequencies, by directions of a pattern's lobes.
 class StarAim {
   public:
-    /// The disc must lie beyond the pattern's radius, and the pattern outlive it.
-    StarAim(const FarPattern&, V2f middle, float disc_radius);
-
-    /// Whether a disc can be aimed at.
-    [[nodiscard]] static bool can(const FarPattern& pattern, V2f middle, float disc_radius) {
+    /// Aim at a disc; nothing where it does not lie beyond the pattern's radius, or holds its
+    /// middle. The pattern must outlive it.
+    [[nodiscard]] static std::optional<StarAim> at(const FarPattern& pattern, V2f middle,
+                                                   float disc_radius) {
         const float away = middle.length();
-        return away - disc_radius > pattern.radius() && away > 1.05f * disc_radius;
+        if (!(away - disc_radius > pattern.radius() && away > 1.05f * disc_radius))
+            return std::nullopt;
+        return StarAim(pattern, middle, disc_radius);
     }
     /// Share of the far light that falls on the disc, about.
     [[nodiscard]] float share() const { return share_; }
@@ -27,6 +28,8 @@ class StarAim {
     [[nodiscard]] float density(V2f v) const;
 
   private:
+    StarAim(const FarPattern&, V2f middle, float disc_radius);
+
     /// Lobe whose spike may cross the disc: from angle to angle about its normal.
     struct Spike {
         float from, to;       ///< radians

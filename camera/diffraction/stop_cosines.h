@@ -26,6 +26,10 @@ class StopCosines {
         float per_film = 0;
     };
     [[nodiscard]] At at(V2f film) const;
+    /// Cosines' derivatives by the film point in the middle of the frame: right, down.
+    [[nodiscard]] std::array<V2f, 2> by_film() const {
+        return {terms_[0] * index_, terms_[1] * index_};
+    }
     /// Film point of cosines; nothing where it lies more than half a frame beyond the edges.
     [[nodiscard]] std::optional<V2f> film_of(V2f cosines) const;
 

@@ -246,16 +246,11 @@ LensLosses<uint32_t> LensCamera::LeadPoint::losses(uint32_t lanes) const {
     out.drawn = lanes;
     if (rays_.passed[lane_]) return out;
     const RayStatus status = rays_.ray.status(lane_);
-    if (!rays_.aimed.found[lane_])
-        out.unreached = lanes;
-    else if (!rays_.aimed.clear[lane_] || !(rays_.open[lane_] > 0 && rays_.density[lane_] > 0))
-        out.vignetted = lanes;
-    else if (status == RayStatus::TotallyReflected)
-        out.totally_reflected = lanes;
-    else if (status == RayStatus::Missed)
-        out.missed = lanes;
-    else
-        out.vignetted = lanes;
+    const bool left = rays_.aimed.clear[lane_] && rays_.open[lane_] > 0 && rays_.density[lane_] > 0;
+    (!rays_.aimed.found[lane_]                       ? out.unreached
+     : left && status == RayStatus::TotallyReflected ? out.totally_reflected
+     : left && status == RayStatus::Missed           ? out.missed
+                                                     : out.vignetted) = lanes;
     return out;
 }
 

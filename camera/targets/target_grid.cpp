@@ -25,17 +25,17 @@ constexpr double kMostMet = 0.25;
 /// Share of the light of a cell's brightest target below which another is left out.
 constexpr double kLeastLight = 1e-3;
 
-Target target_of(const SmallFeature& lamp) {
-    return {lamp.centre, lamp.at_infinity ? std::tan(lamp.reach_m) : lamp.reach_m,
-            lamp.at_infinity};
-}
-
 bool may_be_target(const SmallFeature& feature) {
     return feature.is_lamp() && feature.reach_m > 0 && std::isfinite(feature.reach_m) &&
            std::isfinite(feature.radiance) && !(feature.at_infinity && feature.reach_m > 0.5f);
 }
 
 }  // namespace
+
+Target target_of(const SmallFeature& lamp) {
+    return {lamp.centre, lamp.at_infinity ? std::tan(lamp.reach_m) : lamp.reach_m,
+            lamp.at_infinity};
+}
 
 std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i size_px,
                                                std::span<const SmallFeature> features,

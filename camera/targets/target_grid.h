@@ -11,6 +11,9 @@
 
 namespace petzval {
 
+/// The ball around a lamp, as a target.
+[[nodiscard]] Target target_of(const SmallFeature& lamp);
+
 /// Targets for the lamps among some things: of each cell of 16 x 16 pixels or a little more those
 /// that its rays pass, but few of them, by what each is expected to add to a pixel. nullptr where
 /// there are none, or the frame is smaller than a cell. A function of

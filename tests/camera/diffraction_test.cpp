@@ -179,8 +179,9 @@ TEST(Diffraction, StarDrawsFollowTheirDensity) {
         const double angle = -kTau / 4 + off;  // an edge lies level below
         const V2f middle(V2d(std::cos(angle), std::sin(angle)) * r0);
         const float radius = float(0.02 * r0);
-        ASSERT_TRUE(StarAim::can(pattern.far(), middle, radius));
-        const StarAim aim(pattern.far(), middle, radius);
+        const auto found = StarAim::at(pattern.far(), middle, radius);
+        ASSERT_TRUE(found);
+        const StarAim& aim = *found;
         double ones = 0, light = 0, squares = 0;
         constexpr uint32_t count = 1 << 15;
         for (uint32_t i = 0; i < count; ++i) {

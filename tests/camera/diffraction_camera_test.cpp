@@ -85,7 +85,7 @@ TEST(DiffractionCamera, KeepsTheLightOfAnEvenScene) {
     constexpr uint32_t count = 1 << 18;
     for (const auto& rays : cameras) {
         const DiffractionCamera camera = diffracting(rays);
-        for (const V2f film : {V2f(0.5f), V2f(0.02f, 0.97f), V2f(0.3f, 0.6f)}) {
+        for (const V2f& film : {V2f(0.5f), V2f(0.02f, 0.97f), V2f(0.3f, 0.6f)}) {
             f4 plain{}, spread{};
             for (uint32_t i = 0; i < count; ++i) {
                 Bands bands = kFourLines;
@@ -119,6 +119,21 @@ TEST(DiffractionCamera, EvenScenesHaveLittleNoiseOfColourInCoarsePixels) {
     EXPECT_LT(variance(coarse), 0.05);
     EXPECT_GT(variance(fine), 0.1);
     EXPECT_LT(variance(fine), 0.5);
+}
+
+// An iris that falls between the points of its raster sends rays as they are.
+TEST(DiffractionCamera, AnIrisTooThinForItsRasterDiffractsNothing) {
+    const Polygon sliver{{{V2d(0, 0.1), V2d(1e5, 0.1), V2d(1e5, 0.2), V2d(0, 0.2)}}};
+    const auto rays = thin_lens(sliver);
+    const DiffractionCamera camera = diffracting(rays);
+    for (uint32_t i = 0; i < 64; ++i) {
+        const FilmPoint at{V2f(0.3f), sampler_of(i)};
+        const CameraSample plain = rays->sample(at, kFourLines),
+                           found = camera.sample(at, kFourLines);
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_EQ(found[0].ray.direction, plain[0].ray.direction);
+        EXPECT_EQ(found[0].weight[0], plain[0].weight[0]);
+    }
 }
 
 // On the axis of a lens a unit of the stop's frequencies is one of its f-number: sin u' = 1 / 2N.

@@ -99,6 +99,30 @@ class CliSpectral : public CliTest {
         EXPECT_EQ(run.exit_code, 0) << run.err;
         return run.err;
     }
+    /// Renders of 48x32 pixels and six samples are equal for all numbers of threads, in crops of
+    /// these channels, and merged from ranges. with: the words of a render, these included.
+    void expect_equal_renders(const std::function<Words(Words)>& with, const Words& channels) {
+        const Picture whole = render(with({"--spp", "6"}), "whole.exr");
+        const std::string bytes = file_bytes(path("whole.exr"));
+        EXPECT_TRUE(bytes == render_bytes(with({"--spp", "6", "--threads", "1"})));
+        EXPECT_TRUE(bytes == render_bytes(with({"--spp", "6", "--threads", "4"})));
+        const Picture part = render(with({"--spp", "6", "--crop", "13,5,20,11"}));
+        for (int y = 0; y < 11; ++y)
+            for (int x = 0; x < 20; ++x)
+                for (const std::string& c : channels)
+                    ASSERT_EQ(value_at(part, x, y, c), value_at(whole, x + 13, y + 5, c));
+        for (const char* range : {"0:2", "2:6"})
+            EXPECT_EQ(run_petzval(render_words(with({"--spp", range, "-o",
+                                                     path(std::string(1, range[0]) + ".state")}),
+                                               scene_))
+                          .exit_code,
+                      0);
+        EXPECT_EQ(run_petzval({"merge", path("0.state"), path("2.state"), "-o", path("merged.exr"),
+                               "--quiet"})
+                      .exit_code,
+                  0);
+        EXPECT_TRUE(bytes == file_bytes(path("merged.exr")));
+    }
 };
 
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <initializer_list>
+#include <optional>
 
 #include "tests/support/random_lens.h"
 
@@ -162,6 +163,15 @@ inline void make_wild(Random& random, LensSurface& surface) {
         separator = ",\n";
     }
     return out + "\n]}";
+}
+
+/// Nasty lens for odd i, random one for even; nothing where the prescription is refused.
+[[nodiscard]] inline std::optional<Lens> some_lens(Random& random, int i) {
+    try {
+        return Lens(i % 2 ? nasty_prescription(random, i % 4 == 1) : random_prescription(random));
+    } catch (const std::invalid_argument&) {
+        return std::nullopt;
+    }
 }
 
 }  // namespace petzval::test

@@ -21,32 +21,13 @@ class CliDiffraction : public CliSpectral {
 };
 
 TEST_F(CliDiffraction, EqualRendersAreEqualFiles) {
-    for (const Words& camera : {thin_, lens_}) {
-        const auto with = [&](Words more) {
-            more.insert(more.end(), {"--diffraction", "auto", "--aov", "normal,depth"});
-            return stopped_down(camera, more);
-        };
-        const Picture whole = render(with({"--spp", "6"}), "whole.exr");
-        const std::string bytes = file_bytes(path("whole.exr"));
-        EXPECT_TRUE(bytes == render_bytes(with({"--spp", "6", "--threads", "1"})));
-        EXPECT_TRUE(bytes == render_bytes(with({"--spp", "6", "--threads", "4"})));
-        const Picture part = render(with({"--spp", "6", "--crop", "13,5,20,11"}));
-        for (int y = 0; y < 11; ++y)
-            for (int x = 0; x < 20; ++x)
-                for (const char* c : {"R", "G", "B", "A", "normal.X", "depth.Z"})
-                    ASSERT_EQ(value_at(part, x, y, c), value_at(whole, x + 13, y + 5, c));
-        for (const char* range : {"0:2", "2:6"})
-            EXPECT_EQ(run_petzval(render_words(with({"--spp", range, "-o",
-                                                     path(std::string(1, range[0]) + ".state")}),
-                                               scene_))
-                          .exit_code,
-                      0);
-        EXPECT_EQ(run_petzval({"merge", path("0.state"), path("2.state"), "-o", path("merged.exr"),
-                               "--quiet"})
-                      .exit_code,
-                  0);
-        EXPECT_TRUE(bytes == file_bytes(path("merged.exr")));
-    }
+    for (const Words& camera : {thin_, lens_})
+        expect_equal_renders(
+            [&](Words more) {
+                more.insert(more.end(), {"--diffraction", "auto", "--aov", "normal,depth"});
+                return stopped_down(camera, more);
+            },
+            {"R", "G", "B", "A", "normal.X", "depth.Z"});
 }
 
 // What is asked for where nothing is diffracted leaves every byte.

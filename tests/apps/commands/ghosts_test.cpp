@@ -48,31 +48,12 @@ TEST_F(CliGhosts, PictureWithoutTheirLayerIsThatOfALensWithout) {
 }
 
 TEST_F(CliGhosts, EqualRendersAreEqualFiles) {
-    const auto with = [&](const Words& more) {
-        Words all = coated({"--aov", "ghosts,depth"});
-        all.insert(all.end(), more.begin(), more.end());
-        return all;
-    };
-    const Picture whole = render(with({"--spp", "6"}), "whole.exr");
-    const std::string bytes = file_bytes(path("whole.exr"));
-    EXPECT_TRUE(bytes == render_bytes(with({"--spp", "6", "--threads", "1"})));
-    EXPECT_TRUE(bytes == render_bytes(with({"--spp", "6", "--threads", "4"})));
-    const Picture part = render(with({"--spp", "6", "--crop", "13,5,20,11"}));
-    for (int y = 0; y < 11; ++y)
-        for (int x = 0; x < 20; ++x)
-            for (const char* c : {"R", "G", "B", "A", "ghosts.R", "ghosts.G", "depth.Z"})
-                ASSERT_EQ(value_at(part, x, y, c), value_at(whole, x + 13, y + 5, c));
-    for (const char* range : {"0:2", "2:6"})
-        EXPECT_EQ(run_petzval(render_words(with({"--spp", range, "-o",
-                                                 path(std::string(1, range[0]) + ".state")}),
-                                           scene_))
-                      .exit_code,
-                  0);
-    EXPECT_EQ(run_petzval(
-                  {"merge", path("0.state"), path("2.state"), "-o", path("merged.exr"), "--quiet"})
-                  .exit_code,
-              0);
-    EXPECT_TRUE(bytes == file_bytes(path("merged.exr")));
+    expect_equal_renders(
+        [](Words more) {
+            more.insert(more.end(), {"--aov", "ghosts,depth"});
+            return coated(more);
+        },
+        {"R", "G", "B", "A", "ghosts.R", "ghosts.G", "depth.Z"});
 }
 
 // Alpha and the other layers are those of the light in order.

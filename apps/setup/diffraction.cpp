@@ -12,7 +12,6 @@
 #include "camera/ray_bundle.h"
 #include "camera/targets/make_target_camera.h"
 #include "camera/waves/rays_and_pattern.h"
-#include "core/light/small_features.h"
 
 namespace petzval {
 namespace {
@@ -81,7 +80,7 @@ std::string DiffractionEffect::text() const {
     std::string out = changes() ? fmt::format("lines a pixel wide keep {:.0f} % of their contrast",
                                               100 * finest_contrast)
                                 : "lines a pixel wide keep their contrast";
-    if (lamp) out += ", and a small lamp that shines in gets a star";
+    if (!lamps.empty()) out += ", and a small lamp that shines in gets a star";
     if (errors && changes())
         out += fmt::format(
             "; added to the lens's own errors, contrast is off by {:.2f} in the worst of three "
@@ -95,7 +94,7 @@ DiffractionEffect diffraction_effect(const View& view, V2i frame_px, double focu
     const auto camera = stop_camera(view.still);
     if (!camera) return {};
     DiffractionEffect out{true, finest_contrast(*camera, frame_px),
-                          !star_lamps(*prepared.scene, pose_of(*camera), *prepared.bvh).empty()};
+                          star_lamps(*prepared.scene, pose_of(*camera), *prepared.bvh)};
     if (const auto* lens = std::get_if<std::shared_ptr<const LensCamera>>(&*camera))
         out.errors = errors_of(*lens, frame_px, focus_m);
     return out;
@@ -117,10 +116,8 @@ std::optional<std::string> add_diffraction(const SceneRequest& asked, double foc
             remark = fmt::format("diffraction: {}{}", effect.text(),
                                  effect.matters() ? "" : ": it is left out");
         if (!effect.matters()) return remark;
-        const StopCamera camera = *stop_camera(view.still);
-        FilmSpread spread(camera);
-        LampImages lamps(*target_camera(view.still), asked.size,
-                         star_lamps(*prepared.scene, pose_of(camera), *prepared.bvh), spread);
+        FilmSpread spread(*stop_camera(view.still));
+        LampImages lamps(*target_camera(view.still), asked.size, effect.lamps, spread);
         const float shared = shared_frequency(spread, asked.size);
         view.diffraction = std::make_shared<const Diffraction>(
             Diffraction{std::move(spread), std::move(lamps), shared});

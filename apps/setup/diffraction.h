@@ -4,16 +4,18 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/setup/render_setup.h"
+#include "core/light/small_features.h"
 
 namespace petzval {
 
 /// What diffraction at the iris does to a picture.
 struct DiffractionEffect {
     bool has_iris = false;
-    double finest_contrast = 1;  ///< what it leaves to gratings of two pixels, line d
-    bool lamp = false;           ///< a small lamp shines in, which gets a star
+    double finest_contrast = 1;         ///< what it leaves to gratings of two pixels, line d
+    std::vector<SmallFeature> lamps{};  ///< small ones that shine in, which get a star
     /// Errors of contrast against waves, the larger of three places of the film: of what a picture
     /// of so many pixels can show, up to 100 cycles/mm.
     struct Errors {
@@ -22,7 +24,9 @@ struct DiffractionEffect {
     std::optional<Errors> errors{};  ///< of a lens that is traced, in which rays err as well
 
     /// Whether the picture changes by more than a hundredth of contrast, and towards the truth.
-    [[nodiscard]] bool matters() const { return has_iris && (lamp || (changes() && !is_worse())); }
+    [[nodiscard]] bool matters() const {
+        return has_iris && (!lamps.empty() || (changes() && !is_worse()));
+    }
     /// Reason in words.
     [[nodiscard]] std::string text() const;
     /// Whether errors are worth a remark where diffraction was asked for.

@@ -26,11 +26,11 @@ struct GhostDraw {
 /// Rectangle on the last surface, across the axis, that follows the film point and the wavelength
 /// in straight lines: some of the light of a ghost comes through it. Lengths in mm.
 struct GhostRegion {
-    uint32_t pair;             ///< in GhostOptics::pairs()
-    V2f film_low, film_high;   ///< film points that it is for
-    V2f film{0.f}, rear{0.f};  ///< where the middle is, for one film point at line d
-    V2f by_x{0.f}, by_y{0.f};  ///< change of the middle by the film point
-    V2f by_wave{0.f};          ///< and by wave_of()
+    uint32_t pair;                      ///< in GhostOptics::pairs()
+    V2f film_low{0.f}, film_high{0.f};  ///< film points that it is for
+    V2f film{0.f}, rear{0.f};           ///< where the middle is, for one film point at line d
+    V2f by_x{0.f}, by_y{0.f};           ///< change of the middle by the film point
+    V2f by_wave{0.f};                   ///< and by wave_of()
     V2f long_axis{1.f, 0.f}, half{0.f};
     float light = 0;  ///< irradiance that it brings to the film, in any unit
 

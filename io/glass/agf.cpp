@@ -94,7 +94,7 @@ AgfCatalog::AgfCatalog(std::string_view text, const std::filesystem::path& file)
         if (word.empty()) continue;
         const std::string key = lower(word[0]);
         if (key == "nm" && word.size() > 2)
-            entries_.push_back({word[1], line.number, number_or_nan(word[2]), {}});
+            entries_.push_back({word[1], line.number, number_or_nan(word[2])});
         if (entries_.empty()) continue;
         Entry& entry = entries_.back();
         // Some catalogues break the line of coefficients; the continuation begins with a number.

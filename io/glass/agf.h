@@ -36,9 +36,9 @@ class AgfCatalog {
         std::string name;
         int line = 0;
         double formula = 0;
-        std::vector<double> coefficients;  ///< NaN where the file has something else
+        std::vector<double> coefficients{};  ///< NaN where the file has something else
         double first_um = 0, last_um = 0;
-        std::vector<std::array<double, 2>> absorption_per_mm;
+        std::vector<std::array<double, 2>> absorption_per_mm{};
     };
     [[nodiscard]] Glass glass_of(const Entry&) const;
 

@@ -10,11 +10,12 @@ namespace petzval {
 
 /// Choices that a glTF file leaves to its user.
 struct GltfChoices {
-    std::optional<std::string> scene;    ///< its name or number; absent: the default scene
-    std::optional<std::string> variant;  ///< of its materials, by name or number; absent: none
-    std::optional<float> point_line_radius_m;  ///< draws points and lines as solids of this radius
-    std::optional<AnimationChoice> animation;  ///< absent: the pose that the file stores
-    bool checks_all_animations = false;        ///< warns of faults in those that are not played
+    std::optional<std::string> scene{};    ///< its name or number; absent: the default scene
+    std::optional<std::string> variant{};  ///< of its materials, by name or number; absent: none
+    std::optional<float>
+        point_line_radius_m{};  ///< draws points and lines as solids of this radius
+    std::optional<AnimationChoice> animation{};  ///< absent: the pose that the file stores
+    bool checks_all_animations = false;          ///< warns of faults in those that are not played
 
     [[nodiscard]] bool operator==(const GltfChoices&) const = default;
 };

@@ -2,6 +2,7 @@
 #include "integrator/path/path.h"
 
 #include <numbers>
+#include <tuple>
 
 #include "tests/integrator/path_estimate.h"
 
@@ -284,7 +285,8 @@ TEST(Path, CountsLampsThatMirrorsShow) {
         for (uint32_t i = 0; i < 1000; ++i) {
             const Sampler sampler(SamplerKind::Owen, 0, {0, 0, i});
             FilmSample out;
-            tracer.radiance({bundle(sampler.get2(Dim::Film))}, Bands::rgb(), sampler, out, stats);
+            std::ignore = tracer.radiance({bundle(sampler.get2(Dim::Film))}, Bands::rgb(), sampler,
+                                          out, stats);
         }
         EXPECT_EQ(stats.mirrored.bounces, 1000u);
         if (shown == Shown::Nothing)

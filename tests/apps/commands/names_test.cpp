@@ -80,10 +80,10 @@ TEST_F(CliNames, NoticesAndMetadataShowThemEscaped) {
     EXPECT_NE(text.err.find("material \"" + kShown + "\" is a measured metal"), std::string::npos)
         << text.err;
     EXPECT_EQ(metadata_of(read_picture(path("a.exr")), "petzval:camera"), kShown);
-    const Finished json =
+    const Finished as_json =
         run(render_words({"-o", path("a.exr"), "--progress", "json", "--camera", kEvil}, scene));
-    EXPECT_EQ(json.exit_code, 0) << json.err;
-    std::istringstream lines(json.err);
+    EXPECT_EQ(as_json.exit_code, 0) << as_json.err;
+    std::istringstream lines(as_json.err);
     for (std::string line; std::getline(lines, line);)
         EXPECT_TRUE(nlohmann::json::accept(line)) << line;
 }
@@ -97,9 +97,9 @@ TEST_F(CliNames, ThePlanQuotesThemForAShell) {
     EXPECT_NE(plan.out.find("render $'" + path("a\\'b\\\\c\\u202e\\xff.glb") + "' "),
               std::string::npos)
         << plan.out;
-    Words json = words;
-    json.push_back("--json");
-    EXPECT_EQ(run(json).exit_code, 0);
+    Words asked = words;
+    asked.push_back("--json");
+    EXPECT_EQ(run(asked).exit_code, 0);
 }
 
 TEST_F(CliNames, LensFilesToo) {

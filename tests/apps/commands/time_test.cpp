@@ -198,7 +198,7 @@ TEST_F(CliTime, VelocitiesArePixelsToTheNextFrame) {
     const Words tele = {"--camera", "tele", "--at",  "0",        "--animation", "approach",
                         "--fps",    "5",    "--aov", "velocity", "--method",    "filter=box"};
     const Picture grown = render(tele);
-    for (const V2i px : {V2i(5, 2), V2i(14, 5), V2i(8, 15)}) {
+    for (const V2i& px : {V2i(5, 2), V2i(14, 5), V2i(8, 15)}) {
         const V2f off = V2f(px) + V2f(0.5f) - V2f(8);
         const V2f found = velocity_of(grown, px.x, px.y);
         EXPECT_NEAR(found.x, off.x * (2 / 1.9f - 1), 0.02f) << px.x;
@@ -258,7 +258,7 @@ TEST_F(CliTime, VelocitiesThroughALensAreThoseOfItsPictures) {
     };
     ASSERT_EQ(now.channels[4], "uv.U");
     int checked = 0;
-    for (const V2i px : {V2i(6, 6), V2i(8, 9), V2i(10, 7), V2i(5, 10), V2i(11, 11)}) {
+    for (const V2i& px : {V2i(6, 6), V2i(8, 9), V2i(10, 7), V2i(5, 10), V2i(11, 11)}) {
         const V2f velocity = velocity_of(now, px.x, px.y), goal = uv(now, px.x, px.y);
         // Newton's method on the other picture, linear between the centres of its pixels.
         V2f at = V2f(px);

@@ -156,37 +156,22 @@ TEST(GltfNodes, AnySceneOfTheFileMayBeShown) {
     }
     file.json["scene"] = 1;
     const auto left_of = [&](const char* scene) {
-        return load_with(file, {.scene = scene, .variant = {}, .point_line_radius_m = {}})
-            .scene.meshes.at(0)
-            .positions.at(0)
-            .x;
+        return load_with(file, {.scene = scene}).scene.meshes.at(0).positions.at(0).x;
     };
     EXPECT_EQ(left_of("night"), float('n'));
     EXPECT_EQ(left_of("0"), float('d'));
     EXPECT_EQ(left_of("1"), float('1'));
     EXPECT_EQ(left_of("2"), float('n'));
-    EXPECT_TRUE(has(refusal([&] {
-                        (void)load_with(
-                            file, {.scene = "nigth", .variant = {}, .point_line_radius_m = {}});
-                    }),
+    EXPECT_TRUE(has(refusal([&] { (void)load_with(file, {.scene = "nigth"}); }),
                     "no scene \"nigth\"; it has 0 \"day\", 1 \"1\", 2 \"night\""));
-    EXPECT_TRUE(has(refusal([&] {
-                        (void)load_with(file,
-                                        {.scene = "3", .variant = {}, .point_line_radius_m = {}});
-                    }),
-                    "no scene \"3\""));
-    const GltfFile shown =
-        load_with(file, {.scene = "night", .variant = {}, .point_line_radius_m = {}});
+    EXPECT_TRUE(has(refusal([&] { (void)load_with(file, {.scene = "3"}); }), "no scene \"3\""));
+    const GltfFile shown = load_with(file, {.scene = "night"});
     EXPECT_TRUE(contains_line(shown.contents, "scene 2: night"));
     file.json["scenes"][0]["name"] = "1";  // the first of a name
     EXPECT_EQ(left_of("1"), float('d'));
     TinyGltf none = one_triangle();
     none.add("nodes", {{"mesh", 0}});
-    EXPECT_TRUE(has(refusal([&] {
-                        (void)load_with(none,
-                                        {.scene = "0", .variant = {}, .point_line_radius_m = {}});
-                    }),
-                    "the file has none"));
+    EXPECT_TRUE(has(refusal([&] { (void)load_with(none, {.scene = "0"}); }), "the file has none"));
 }
 
 // KHR_node_visibility: "Visibility affects neither cameras", and no child of a hidden node shows.

@@ -20,7 +20,7 @@ GltfFile load_drawn(const TinyGltf& file) {
     const TempFolder folder;
     PictureBudget pictures;
     return load_gltf(file.save_glb(folder.path / "test.glb"), FileScope::Anywhere, pictures,
-                     {.scene = {}, .variant = {}, .point_line_radius_m = kRadius_m});
+                     {.point_line_radius_m = kRadius_m});
 }
 
 /// Four corners of a square of side 1, drawn in a mode; more: of the primitive.

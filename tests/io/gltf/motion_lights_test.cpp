@@ -89,38 +89,48 @@ TEST(GltfMotion, LightsStandWhereTheStillsHaveThem) {
     }
 }
 
-TEST(GltfMotion, LightsWithARadiusAreBallsThatMove) {
-    TinyGltf file;
+/// A node with a light of one of three sizes: a ball, a rectangle, an ellipse.
+int add_sized(TinyGltf& file, json light, int size) {
+    json node = json::object();
+    if (size == 0)
+        light["extras"]["petzval"]["radius_m"] = 0.1;
+    else
+        node["extras"]["petzval"] = {{"area", {0.4, 0.1}},
+                                     {"shape", size == 1 ? "rectangle" : "ellipse"}};
     file.json["extensionsUsed"] = {"KHR_lights_punctual"};
-    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {
-        {{"type", "point"}, {"intensity", 2}, {"extras", {{"petzval", {{"radius_m", 0.1}}}}}}};
-    const int node = file.add_root({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-    swing(file, node);
-    const SavedGltf saved(file);
-    const GltfFile open = saved.at(kAt, kOpen);
-    ASSERT_EQ(open.scene.instances.size(), 1u);
-    EXPECT_TRUE(open.scene.instances[0].moves);
-    for (const float time : {0.f, 0.3f, 0.5f, 0.8f, 1.f}) {
-        const GltfFile still = saved.at(kAt + (double(time) - 0.5) * kOpen);
-        EXPECT_LT(apart(triangles_at(open.scene, time), triangles_at(still.scene, 0.5f)), 1e-3);
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {std::move(light)};
+    node["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
+    return file.add_root(std::move(node));
+}
+
+TEST(GltfMotion, LightsWithASizeMoveAsTheStillsDo) {
+    for (const int size : {0, 1, 2}) {
+        TinyGltf file;
+        swing(file, add_sized(file, {{"type", "point"}, {"intensity", 2}}, size));
+        const SavedGltf saved(file);
+        const GltfFile open = saved.at(kAt, kOpen);
+        ASSERT_EQ(open.scene.instances.size(), 1u) << size;
+        EXPECT_TRUE(open.scene.instances[0].moves);
+        for (const float time : {0.f, 0.3f, 0.5f, 0.8f, 1.f}) {
+            const GltfFile still = saved.at(kAt + (double(time) - 0.5) * kOpen);
+            expect_still(still);
+            EXPECT_LT(apart(triangles_at(open.scene, time), triangles_at(still.scene, 0.5f)), 1e-3)
+                << size << ", at " << time;
+        }
     }
 }
 
 // What is not followed is said.
-TEST(GltfMotion, ASpotWithARadiusThatTurnsIsWarnedOf) {
-    for (const bool turns : {false, true}) {
-        TinyGltf file;
-        file.json["extensionsUsed"] = {"KHR_lights_punctual"};
-        file.json["extensions"]["KHR_lights_punctual"]["lights"] = {
-            {{"type", "spot"},
-             {"spot", json::object()},
-             {"extras", {{"petzval", {{"radius_m", 0.1}}}}}}};
-        const int node = file.add_root({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-        animate(file, node, "translation", {0, 1}, {0, 0, 0, 1, 2, 3});
-        if (turns) spin(file, node, kAxis, 60);
-        const GltfFile open = SavedGltf(file).at(kAt, kOpen);
-        EXPECT_EQ(contains_line(open.warnings, "shines as in the middle"), turns);
-    }
+TEST(GltfMotion, ASpotWithASizeThatTurnsIsWarnedOf) {
+    for (const int size : {0, 1})
+        for (const bool turns : {false, true}) {
+            TinyGltf file;
+            const int node = add_sized(file, {{"type", "spot"}, {"spot", json::object()}}, size);
+            animate(file, node, "translation", {0, 1}, {0, 0, 0, 1, 2, 3});
+            if (turns) spin(file, node, kAxis, 60);
+            const GltfFile open = SavedGltf(file).at(kAt, kOpen);
+            EXPECT_EQ(contains_line(open.warnings, "shines as in the middle"), turns) << size;
+        }
 }
 
 TEST(GltfMotion, CamerasStandWhereTheStillsHaveThem) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Valid glTF files that combine what meshes may have: skins, morph targets, normals, tangents,
 // several sets of texture coordinates, colours, every format, every topology and every way to store
-// it, mirrored textures, repeated vertices, shared meshes. A seed draws each of them.
+// it, mirrored textures, repeated vertices, shared meshes, instances. A seed draws each of them.
 #pragma once
 
 #include <set>
@@ -17,7 +17,7 @@ namespace petzval::test {
 /// own. Joints are the first nodes.
 class CombinedGltf : public AnimatedGltf {
   public:
-    /// plain: the same without interleaving, sparse accessors and compression.
+    /// plain: the same without interleaving, sparse accessors, compression and instancing.
     explicit CombinedGltf(uint32_t seed, bool plain = false)
         : dice_(seed), plain_(plain), writer_(*this) {
         joints_ = 1 + dice_.below(4);
@@ -344,8 +344,10 @@ class CombinedGltf : public AnimatedGltf {
                 node["translation"] = {2. * double(i), 0, 0.5};
                 node["scale"] = {dice_.comes(40) ? -1.5 : 1.5, 1, 0.75};
             }
+            const bool many = !skinned_ && dice_.comes(35);
+            const std::vector<int> shown = many ? add_instances(node) : std::vector<int>{};
             const int at = add_root(std::move(node));
-            if (targets_ > 0) animate_weights(at);
+            if (targets_ > 0) animate_weights(shown.empty() ? std::vector<int>{at} : shown);
             if (!skinned_ && dice_.comes(40))
                 add_channel(node_target(at, "rotation"), {0, 1, 2}, "VEC4",
                             {0, 0, 0, 1, 0, 0.6f, 0, 0.8f, 0.6f, 0, 0, 0.8f});
@@ -363,10 +365,42 @@ class CombinedGltf : public AnimatedGltf {
         bind_ = turned;
     }
 
-    void animate_weights(int node) {
+    /// Shows a node's mesh at one to three places about it: by instancing, or as the plain twin by
+    /// a child each. The nodes that show it; none where the node itself does.
+    std::vector<int> add_instances(nlohmann::json& node) {
+        std::vector<int> children;
+        std::vector<float> places, turns, sizes;
+        for (size_t i = 0, count = 1 + dice_.below(3); i < count; ++i) {
+            const std::vector<float> place = {float(dice_.between(-1, 1)), 0, -2 * float(i)};
+            const std::vector<float> turn = dice_.comes(50) ? std::vector<float>{0, 0.6f, 0, 0.8f}
+                                                            : std::vector<float>{0, 0, 0, 1};
+            const std::vector<float> size = {dice_.comes(30) ? -1.f : 1.f, 1.25f, 0.75f};
+            if (plain_)
+                children.push_back(add(
+                    "nodes",
+                    {{"mesh", 0}, {"translation", place}, {"rotation", turn}, {"scale", size}}));
+            places.insert(places.end(), place.begin(), place.end());
+            turns.insert(turns.end(), turn.begin(), turn.end());
+            sizes.insert(sizes.end(), size.begin(), size.end());
+        }
+        if (plain_) {
+            node.erase("mesh");
+            node["children"] = children;
+        } else {
+            writer_.use("EXT_mesh_gpu_instancing");
+            node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+                {"TRANSLATION", add_accessor<float>("VEC3", places)},
+                {"ROTATION", add_accessor<float>("VEC4", turns)},
+                {"SCALE", add_accessor<float>("VEC3", sizes)}};
+        }
+        return children;
+    }
+
+    void animate_weights(const std::vector<int>& nodes) {
         std::vector<float> weights(targets_, 0.f);
         for (size_t i = 0; i < 2 * targets_; ++i) weights.push_back(float(dice_.between(-1, 1)));
-        add_channel(node_target(node, "weights"), {0, 1, 2}, "SCALAR", weights);
+        for (const int node : nodes)
+            add_channel(node_target(node, "weights"), {0, 1, 2}, "SCALAR", weights);
     }
 
     Dice dice_;

@@ -37,13 +37,15 @@ mapfile -t commands < <(for c in "" image lens; do
 known=$(for c in "${commands[@]}"; do "$petzval" help $c all; done |
     grep -oP '((?<=--)|(?<=^  ))[a-z][a-z-]*' | sort -u)
 [ "$(wc -l <<< "$known")" -gt 80 ] || missing "$petzval" "its help"
+names=$(printf '%s\n' "${commands[@]##* }" image lens)
 foreign='build|install|prefix|preset|target|gtest_filter|tool|parallel|array|cpus-per-task|axis|scenes|peer|rows|seeds|timed-seeds|petzval|reference-spp|factory-startup|size|help|version|list-presets|formats|crop|out|printstats|mosaic'
 for page in "${current[@]}"; do
-    for option in $(grep -oP '(?<![\w-])--\K[a-z][a-z_-]*\w|--method \K[a-z-]+' "$page" | sort -u); do
-        grep -qx -- "$option" <<< "$known" || grep -qxE -- "$foreign" <<< "$option" || missing "$page" "--$option"
+    for option in $(grep -oP '(?<![\w-])--\K[a-z][a-z_-]*\w|--method \K[a-z-]+' "$page" | sort -u |
+        grep -vxF -- "$known" | grep -vxE -- "$foreign"); do
+        missing "$page" "--$option"
     done
-    for command in $(grep -oP '\bpetzval \K(?!help\b)[a-z-]+(?= )' "$page" | sort -u); do
-        printf '%s\n' "${commands[@]}" image lens | grep -qE "(^| )$command$" || missing "$page" "petzval $command"
+    for command in $(grep -oP '\bpetzval \K(?!help\b)[a-z-]+(?= )' "$page" | sort -u | grep -vxF -- "$names"); do
+        missing "$page" "petzval $command"
     done
 done
 exit $status

@@ -12,7 +12,7 @@ written. The picture is the built-in scene, 64x36 pixels, 16 samples a pixel, on
 without rays to targets. Rooms core,
 camera and integrator are compiled with line numbers for this (CMakeLists.txt).
 
-Exit status 77: there is no valgrind.
+Exit status 77: there is no valgrind, or it does not know this processor.
 """
 import argparse
 import collections
@@ -33,14 +33,21 @@ PRODUCT = re.compile(r"(?:.*/)?((?:core|camera|integrator|io|apps)/\S+)$")
 SAMPLING = "petzval::SampleBatch<petzval::PathTracer<petzval::Bvh, petzval::Unwatched> >::render()"
 
 
+def skip(reason):
+    print(f"{reason}: the road of a sample is not counted")
+    sys.exit(77)
+
+
 def profile(program, options, out):
     command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "--dump-line=yes",
                "--compress-strings=no", "--compress-pos=no", f"--toggle-collect={SAMPLING}",
                program, "render", str(ROOT / "assets/scenes/first_light.glb"), "--size", "64x36", "--method", "targets=off", "--spp", "16",
                "--threads", "1", *options, "--quiet", "-o", str(out) + ".exr"]
     done = subprocess.run(command, capture_output=True, text=True)
+    if "Unrecognised instruction" in done.stderr:
+        skip("valgrind does not know an instruction of this processor")
     if done.returncode:
-        sys.exit(f"{' '.join(command)}\n{done.stderr}")
+        sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
 
 
 def costs(out):
@@ -74,8 +81,7 @@ def main():
     parser.add_argument("--instructions", action="store_true", help="print how many instructions a sample takes")
     asked = parser.parse_args()
     if not shutil.which("valgrind"):
-        print("there is no valgrind: the road of a sample is not counted")
-        sys.exit(77)
+        skip("there is no valgrind")
     too_long = False
     with tempfile.TemporaryDirectory() as folder:
         for road, options in ROADS.items():

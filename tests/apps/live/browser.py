@@ -156,7 +156,7 @@ class Browser(Driven):
         self.wait(lambda _: "--lens" not in self.command())
         self.find("redo").click()
         self.wait(lambda _: "--lens takumar" in self.command())
-        self.assertIn("lens=takumar", self.browser.current_url)
+        self.wait(lambda _: "lens=takumar" in self.browser.current_url)
         self.wait_done()
 
     def depth_at(self, x, y):

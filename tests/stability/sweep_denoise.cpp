@@ -12,7 +12,7 @@ namespace petzval::stability {
 namespace {
 
 constexpr int kSide_px = 64;
-constexpr uint32_t kSamples = 64, kPictures = 12;
+constexpr uint32_t kDenoiseSamples = 64, kPictures = 12;
 
 /// A sample of a pixel, in nits: of a column, by two numbers between 0 and 1.
 using Light = std::function<float(int x, V2f u)>;
@@ -34,7 +34,7 @@ Denoisings denoisings_of(const Light& light, const std::function<double(int x)>&
         Draws draws(seed);
         for (int y = 0; y < kSide_px; ++y)
             for (int x = 0; x < kSide_px; ++x)
-                for (uint32_t i = 0; i < kSamples; ++i) {
+                for (uint32_t i = 0; i < kDenoiseSamples; ++i) {
                     FilmSample sample;
                     sample.colour = Rgb(light(x, draws.next2()));
                     film.add(x, y, i, sample);
@@ -71,7 +71,7 @@ Finding denoised_rare_light() {
         "light of 1 nit that a share of the samples finds: the rarer, the brighter. The samples of "
         "a picture that find it; the part of it that the denoised picture keeps; the squared error "
         "over that without denoising; the share of the pictures whose bounds hold the error.",
-        kSide_px, kSamples, kPictures);
+        kSide_px, kDenoiseSamples, kPictures);
     f.table.columns = {"share of samples", "found", "kept", "squares", "held"};
     std::optional<double> lost, missed;
     for (const double chance :
@@ -82,7 +82,7 @@ Finding denoised_rare_light() {
             [](int) { return 2.; });
         double mean = 0;
         for (const double column : got.columns) mean += column / kSide_px;
-        add_row(f, chance, chance * kSamples * kSide_px * kSide_px, percent(mean - 1),
+        add_row(f, chance, chance * kDenoiseSamples * kSide_px * kSide_px, percent(mean - 1),
                 got.denoised / got.noisy, percent(got.held));
         if (!lost && mean < 1.9) lost = chance;
         if (!missed && got.held < 0.5) missed = chance;
@@ -108,7 +108,7 @@ Finding denoised_detail() {
         "a sine of 0.2 nits, and noise of a pixel between a hundredth and ten times of that. The "
         "part of the stripes that the denoised picture keeps; the squared error over that without "
         "denoising; the share of the pictures whose bounds hold the error.",
-        kSide_px, kSamples, kPictures, kPeriod_px);
+        kSide_px, kDenoiseSamples, kPictures, kPeriod_px);
     f.table.columns = {"noise over detail", "kept", "squares", "held"};
     constexpr float kDetail_nits = 0.2f;
     const auto wave = [](int x) {
@@ -117,7 +117,8 @@ Finding denoised_detail() {
     std::optional<double> halved;
     for (const double noise : {0.01, 0.03, 0.1, 0.3, 1., 3., 10.}) {
         // Even numbers between -1 and 1 have a variance of a third.
-        const float spread = static_cast<float>(noise * std::sqrt(3. * kSamples)) * kDetail_nits;
+        const float spread =
+            static_cast<float>(noise * std::sqrt(3. * kDenoiseSamples)) * kDetail_nits;
         const auto truth = [&](int x) { return 1 + kDetail_nits * wave(x); };
         const Denoisings got =
             denoisings_of([&](int x, V2f u) { return truth(x) + spread * (2 * u.x - 1); },

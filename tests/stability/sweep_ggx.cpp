@@ -34,10 +34,10 @@ struct Furnace {
     uint32_t bad = 0;  ///< samples that are not numbers
 };
 
-constexpr uint32_t kSamples = 1u << 14;
+constexpr uint32_t kGgxSamples = 1u << 14;
 
 Furnace furnace(Kind kind, double roughness, double cosine, double eta = 1.5,
-                uint32_t samples = kSamples) {
+                uint32_t samples = kGgxSamples) {
     const Bsdf bsdf(white(kind, roughness, eta), Bands::rgb(), at_cosine(cosine));
     Furnace out;
     double sum = 0;
@@ -65,7 +65,7 @@ struct Kept {
 
     void add(double roughness, double cosine) {
         for (const double eta : {1.1, 1 / 1.1, 1.5, 1 / 1.5, 2.4, 1 / 2.4}) {
-            const Furnace f = furnace(Kind::Glass, roughness, cosine, eta, 4 * kSamples);
+            const Furnace f = furnace(Kind::Glass, roughness, cosine, eta, 4 * kGgxSamples);
             least = std::fmin(least, f.albedo);
             most = std::fmax(most, f.albedo);
             bad += f.bad;
@@ -136,16 +136,16 @@ struct Density {
 // The integral of the density over the directions above, by other draws than the sampler's: normals
 // by D cos (Walter et al. 2007, equations 35 and 36), of all that the metal's lobe can be.
 Density density_of(double roughness, double cosine) {
-    constexpr uint32_t kSamples = 1u << 17;
+    constexpr uint32_t kDraws = 1u << 17;
     const V3f wo = at_cosine(cosine);
     const Bsdf bsdf(white(Kind::Metal, roughness), Bands::rgb(), wo);
     const auto alpha = static_cast<float>(roughness * roughness);
     Density out;
-    for (uint32_t i = 0; i < kSamples; ++i) {
+    for (uint32_t i = 0; i < kDraws; ++i) {
         const Sampler sampler(SamplerKind::Owen, 8, {0, 0, i});
         const V2f u = sampler.get2(Dim::Bsdf);
         if (const auto s = bsdf.sample(sampler.get1(Dim::BsdfLobe), u); s && s->wi.z > 0)
-            out.sampled += 1.0 / kSamples;
+            out.sampled += 1.0 / kDraws;
         const V2f v = sampler.get2(Dim::LightPoint);
         const double tan2 = double(alpha * alpha) * double(v.x) / (1 - double(v.x));
         const double c = 1 / std::sqrt(1 + tan2), s = std::sqrt(tan2) * c;
@@ -156,7 +156,7 @@ Density density_of(double roughness, double cosine) {
         const V3f wi = reflect(wo, m);
         if (!(wo_m > 0 && wi.z > 0)) continue;
         const double drawn = double(ggx_d(m, alpha)) * c / (4 * double(wo_m));
-        out.integrated += double(bsdf.eval(wi).pdf) / drawn / kSamples;
+        out.integrated += double(bsdf.eval(wi).pdf) / drawn / kDraws;
     }
     return out;
 }

@@ -11,7 +11,7 @@
 namespace petzval::stability {
 namespace {
 
-constexpr uint32_t kSamples = 1u << 16;
+constexpr uint32_t kLightSamples = 1u << 16;
 /// Samples for 1 % of error are 1e4 times the relative variance.
 constexpr double kMost = 1e4;
 
@@ -31,11 +31,11 @@ Measured lit(const World& world, Technique technique, int max_depth = 1) {
     PathOptions options;
     options.max_depth = max_depth;
     options.technique = technique;
-    return measure(world, options, kSamples, straight_down);
+    return measure(world, options, kLightSamples, straight_down);
 }
 
 std::string variance_of(const Measured& m) {
-    if (!(m.found > 0)) return fmt::format("none of {} found it", kSamples);
+    if (!(m.found > 0)) return fmt::format("none of {} found it", kLightSamples);
     return m.relative_variance < 1e-9 ? "below 1e-9" : number(m.relative_variance);
 }
 
@@ -79,7 +79,7 @@ Finding tiny_sun() {
         "A matt floor under a black sky whose one bright texel is the sun, always of the same "
         "illuminance, by the width of the picture: variance of one sample over the mean squared, "
         "from {} independent samples, by light samples, by samples of the surface, and by both.",
-        kSamples);
+        kLightSamples);
     f.table.columns = {"sky's width (texels)", "both (as rendered)", "light samples only",
                        "surface samples only"};
     double worst_both = 0;
@@ -111,7 +111,7 @@ Finding tiny_lamp() {
         "A matt floor 10 m below a square lamp, always of the same illuminance, by the lamp's "
         "side: variance of one sample over the mean squared, from {} independent samples, as for "
         "the sun; and as rendered with a slab of glass between lamp and floor.",
-        kSamples);
+        kLightSamples);
     f.table.columns = {"side (m)", "both (as rendered)", "light samples only",
                        "surface samples only", "as rendered behind glass"};
     for (const double side : {3., 1., 0.1, 0.01, 1e-3, 1e-4}) {
@@ -135,7 +135,7 @@ Finding tiny_lamp() {
         "Without light samples the variance passes {} (1 % of error in 1e8 samples) below a side "
         "of {} m, and so it does as rendered behind glass below {} m: what no path of {} finds "
         "looks dark. Without glass: {}",
-        number(kMost), number(surface), number(glass), kSamples,
+        number(kMost), number(surface), number(glass), kLightSamples,
         both ? "above 1 below a side of " + number(*both) + " m"
              : std::string("never above 1 down to a micrometre"));
     f.instead =
@@ -148,7 +148,7 @@ Finding tiny_lamp() {
 
 namespace {
 
-constexpr double kFocal_mm = 50, kFilm_px_mm = 0.006, kFocus_m = 1, kBehind_m = 10;
+constexpr double kLightFocal_mm = 50, kFilm_px_mm = 0.006, kFocus_m = 1, kBehind_m = 10;
 
 struct Highlight {
     Measured all;
@@ -159,7 +159,7 @@ struct Highlight {
 Highlight highlight(double side_m, double fstop) {
     const World world = lamp_ahead(side_m, kBehind_m);
     const ThinLensCamera camera(
-        {M44f(), 0.47f, 1.5f, Iris(Disk{}, kFocal_mm / (2 * fstop)), float(kFocus_m)});
+        {M44f(), 0.47f, 1.5f, Iris(Disk{}, kLightFocal_mm / (2 * fstop)), float(kFocus_m)});
     const V2f pixel(0.5f + 0.0007f, 0.5f + 0.0004f);
     const auto ray = [&](const Sampler& sampler) {
         return camera.sample({pixel, sampler}, Bands::rgb())[0].ray;
@@ -187,7 +187,7 @@ Highlight highlight(double side_m, double fstop) {
 }
 
 double confusion_m(double fstop) {
-    return kFocal_mm / fstop * 1e-3 * (kBehind_m - kFocus_m) / kFocus_m;
+    return kLightFocal_mm / fstop * 1e-3 * (kBehind_m - kFocus_m) / kFocus_m;
 }
 
 }  // namespace
@@ -200,10 +200,10 @@ Finding defocused_highlights() {
         "confusion on the film in pixels of 6 um and at the highlight, the share of it that the "
         "highlight fills, variance of one sample over the mean squared, samples for 10 % of error, "
         "and by what Owen-scrambled points divide the variance of 256 samples. No rays to targets.",
-        kFocal_mm, kFocus_m, kBehind_m);
+        kLightFocal_mm, kFocus_m, kBehind_m);
     f.table.columns = {"side (m)", "f/",       "blur (px)",        "blur there (m)",
                        "share",    "variance", "samples for 10 %", "gain of Owen"};
-    const double film_mm = kFocal_mm / (1 - kFocal_mm / (kFocus_m * 1e3));
+    const double film_mm = kLightFocal_mm / (1 - kLightFocal_mm / (kFocus_m * 1e3));
     for (const double fstop : {1.4, 5.6})
         for (const double side : {0.1, 0.03, 0.01, 3e-3}) {
             const Highlight h = highlight(side, fstop);

@@ -12,7 +12,7 @@
 namespace petzval::stability {
 namespace {
 
-constexpr int kCells = 100, kSide_px = 16;
+constexpr int kCells = 100, kNoiseSide_px = 16;
 constexpr double kNoise = 0.1, kMuch = 1.25;
 
 /// Light between 0.5 and 1.5, and a lamp that one path of 1 / chance meets. The variance that the
@@ -43,7 +43,7 @@ Ends ends_with(double chance) {
     auto target = std::make_shared<NoiseTarget>();
     target->noise = kNoise;
     target->floor_nits = 0.01;
-    target->frame_px = {kSide_px, kSide_px};
+    target->frame_px = {kNoiseSide_px, kNoiseSide_px};
     Ends out;
     for (uint32_t seed = 0; seed < kCells; ++seed) {
         RenderJob job;
@@ -52,7 +52,7 @@ Ends ends_with(double chance) {
         job.sampler = SamplerKind::Independent;
         job.filter = Filter(FilterKind::Box, 0.5f);
         job.noise = target;
-        Film film(target->frame_px, {0, 0, kSide_px, kSide_px}, {}, {}, {.blocks = true});
+        Film film(target->frame_px, {0, 0, kNoiseSide_px, kNoiseSide_px}, {}, {}, {.blocks = true});
         ThreadExecutor executor(1);
         RenderMonitor monitor;
         const test::FilmCamera camera;
@@ -77,7 +77,7 @@ Finding rendered_noise() {
         "of a "
         "sample stays. The share of the cells that say \"at least\"; the share of those that do "
         "not, whose true noise is above {3} times the target; and the mean of the samples.",
-        kSide_px, percent(kNoise), kCells, number(kMuch));
+        kNoiseSide_px, percent(kNoise), kCells, number(kMuch));
     f.table.columns = {"share of paths", "at least", "too noisy", "samples"};
     std::optional<double> often;
     double met = 0;  // paths of a cell, there
@@ -86,7 +86,7 @@ Finding rendered_noise() {
         add_row(f, chance, percent(ends.at_least), percent(ends.too_noisy), ends.samples);
         if (often || ends.too_noisy <= 0.05) continue;
         often = chance;
-        met = chance * kSide_px * kSide_px * ends.samples;
+        met = chance * kNoiseSide_px * kNoiseSide_px * ends.samples;
     }
     f.where = fmt::format(
         "Where a share of {} of the paths meets a lamp, or less, more than 5 % of the cells are "

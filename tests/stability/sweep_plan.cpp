@@ -14,9 +14,10 @@
 namespace petzval::stability {
 namespace {
 
-constexpr double kFocal_mm = 50, kFilm_px_mm = 0.006, kFocus_m = 1, kBehind_m = 10, kFstop = 1.4;
+constexpr double kPlanFocal_mm = 50, kPlanFilm_px_mm = 0.006, kPlanFocus_m = 1, kPlanBehind_m = 10,
+                 kFstop = 1.4;
 constexpr V2i kFrame{64, 36};
-constexpr uint32_t kSamples = 32;  ///< of each replicate, as plans take them
+constexpr uint32_t kPlanSamples = 32;  ///< of each replicate, as plans take them
 
 struct Planned {
     double met = 0;  ///< camera paths that met the lamp
@@ -26,7 +27,7 @@ struct Planned {
 // A frame within the circle of confusion of a square lamp: any of its pixels meets the lamp with
 // the same chance.
 Planned planned(double side_m) {
-    const World world = lamp_ahead(side_m, kBehind_m);
+    const World world = lamp_ahead(side_m, kPlanBehind_m);
     RenderSetup setup;
     const auto borrowed = [](const auto& owned) {
         return std::shared_ptr<std::remove_reference_t<decltype(owned)>>(std::shared_ptr<void>(),
@@ -35,11 +36,12 @@ Planned planned(double side_m) {
     setup.prepared.scene = borrowed(world.scene);
     setup.prepared.bvh = borrowed(*world.bvh);
     setup.prepared.lights = borrowed(*world.lights);
-    const double film_mm = kFocal_mm / (1 - kFocal_mm / (kFocus_m * 1e3));
-    const auto yfov_rad = static_cast<float>(2 * std::atan(kFrame.y * kFilm_px_mm / 2 / film_mm));
+    const double film_mm = kPlanFocal_mm / (1 - kPlanFocal_mm / (kPlanFocus_m * 1e3));
+    const auto yfov_rad =
+        static_cast<float>(2 * std::atan(kFrame.y * kPlanFilm_px_mm / 2 / film_mm));
     setup.view.still = std::make_unique<ThinLensCamera>(
         ThinLens{M44f(), yfov_rad, float(kFrame.x) / float(kFrame.y),
-                 Iris(Disk{}, kFocal_mm / (2 * kFstop)), float(kFocus_m)});
+                 Iris(Disk{}, kPlanFocal_mm / (2 * kFstop)), float(kPlanFocus_m)});
     setup.view.camera = setup.view.still;
     const std::vector<SmallFeature> features = small_features_of(world.scene);
     const std::vector<FilmRegion> regions = film_regions(*setup.view.still, kFrame, features);
@@ -49,19 +51,20 @@ Planned planned(double side_m) {
     RenderJob job;
     job.sampler = SamplerKind::Independent;  // as the closed form has it
     const auto model = pilot.model(std::move(setup), job, PathOptions());
-    pilot.sample(*model, kSamples);
+    pilot.sample(*model, kPlanSamples);
     const std::vector<V3d> least = least_means(pilot, *model, lamps);
     const double floor = pilot_floor(pilot, *model, least);
     Planned out;
     out.candidate.noise = noise_of(pilot, *model, {model.get(), model.get(), floor, least});
     out.candidate.rare = rare_light(pilot, *model, lamps, true, floor);
     for (size_t p = 0; p < pilot.pixels(); ++p)
-        for (const V3d& mean : model->means(p)) out.met += mean.x * kSamples;
+        for (const V3d& mean : model->means(p)) out.met += mean.x * kPlanSamples;
     return out;
 }
 
 double share_of(double side_m) {
-    const double blur_m = kFocal_mm / kFstop * 1e-3 * (kBehind_m - kFocus_m) / kFocus_m;
+    const double blur_m =
+        kPlanFocal_mm / kFstop * 1e-3 * (kPlanBehind_m - kPlanFocus_m) / kPlanFocus_m;
     return side_m * side_m / (std::numbers::pi / 4 * blur_m * blur_m);
 }
 
@@ -76,15 +79,15 @@ Finding planned_noise() {
         "By the lamp's side: its share of the blur, the paths that met it and those that were to "
         "be expected, the variance of a sample over the squared mean, what the plan makes of it, "
         "and whether it says \"at least\".",
-        kFocal_mm, kFstop, kFocus_m, kBehind_m, kFrame.x, kFrame.y, kSamples);
+        kPlanFocal_mm, kFstop, kPlanFocus_m, kPlanBehind_m, kFrame.x, kFrame.y, kPlanSamples);
     f.table.columns = {"side (m)", "share", "met", "expected", "variance", "planned", "says"};
-    const double paths = double(kFrame.x) * kFrame.y * kPilotReplicates * kSamples;
+    const double paths = double(kFrame.x) * kFrame.y * kPilotReplicates * kPlanSamples;
     double worst = 1;
     for (const double side : {0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5}) {
         const Planned p = planned(side);
         const double share = share_of(side), truth = 1 / share - 1;
         const double variance =
-            p.candidate.noise.variances.back().mean * kSamples + p.candidate.rare.noise;
+            p.candidate.noise.variances.back().mean * kPlanSamples + p.candidate.rare.noise;
         add_row(f, side, share, p.met, share * paths, truth, variance,
                 p.candidate.noise_at_least() ? "at least" : "about");
         if (!p.candidate.noise_at_least())

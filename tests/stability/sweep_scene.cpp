@@ -11,7 +11,7 @@
 namespace petzval::stability {
 namespace {
 
-struct Faults {
+struct BallFaults {
     double self_hits = 0, leaks = 0;  ///< shares of the rays
 
     [[nodiscard]] double all() const { return self_hits + leaks; }
@@ -19,7 +19,7 @@ struct Faults {
 
 // Rays from inside a closed convex mesh: each must hit; what leaves the hit outward must hit
 // nothing, what leaves it inward must hit another triangle.
-Faults leave_ball(double radius_m, double away_radii) {
+BallFaults leave_ball(double radius_m, double away_radii) {
     constexpr int kRays = 1500;
     const auto radius = static_cast<float>(radius_m);
     const V3f centre = V3f(1.f, -0.7f, 0.3f) * static_cast<float>(radius_m * away_radii);
@@ -27,7 +27,7 @@ Faults leave_ball(double radius_m, double away_radii) {
     world.place(ball(centre, radius), diffuse(0.5f));
     world.finish();
     Draws draws(17);
-    Faults out;
+    BallFaults out;
     for (int i = 0; i < kRays; ++i) {
         Ray ray;
         ray.origin = centre + uniform_sphere(draws.next2()) * (0.5f * radius * draws.next());

@@ -15,8 +15,8 @@
 namespace petzval::stability {
 namespace {
 
-constexpr double kFocal_mm = 50, kAway_m = 10;
-constexpr uint32_t kSamples = 1u << 15;
+constexpr double kTargetsFocal_mm = 50, kAway_m = 10;
+constexpr uint32_t kTargetsSamples = 1u << 15;
 /// Share of ordinary rays that pass a target which is well out of focus, at most.
 constexpr float kOutOfFocus = 0.05f;
 const V2i kFrame_px(960, 640);
@@ -24,8 +24,8 @@ const V2i kFrame_px(960, 640);
 constexpr int kRoom = 48;
 
 std::unique_ptr<TargetCamera> thin(double fstop, double focus_m) {
-    return target_camera(std::make_shared<ThinLensCamera>(
-        ThinLens{M44f(), 0.47f, 1.5f, Iris(Disk{}, kFocal_mm / (2 * fstop)), float(focus_m)}));
+    return target_camera(std::make_shared<ThinLensCamera>(ThinLens{
+        M44f(), 0.47f, 1.5f, Iris(Disk{}, kTargetsFocal_mm / (2 * fstop)), float(focus_m)}));
 }
 
 /// A pixel in the middle of the film, with a filter as wide as itself.
@@ -58,7 +58,7 @@ double variance_with(const World& world, const Camera& camera) {
     const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
     PathStats stats;
     double sum = 0, squares = 0;
-    for (uint32_t i = 0; i < kSamples; ++i) {
+    for (uint32_t i = 0; i < kTargetsSamples; ++i) {
         const Sampler sampler(SamplerKind::Independent, 1, {0, 0, i});
         const FilmPoint point = draw(kPixel, V2f(kFrame_px), sampler);
         const Bands bands = Bands::rgb();
@@ -72,7 +72,7 @@ double variance_with(const World& world, const Camera& camera) {
         sum += light;
         squares += light * light;
     }
-    return squares * kSamples / (sum * sum) - 1;
+    return squares * kTargetsSamples / (sum * sum) - 1;
 }
 
 struct Sent {
@@ -199,7 +199,7 @@ Finding rays_to_targets() {
         "around it: variance of one sample over the mean squared, by the lamp's side and the "
         "distance in focus, and the share of ordinary rays that pass the target. Then lamps side "
         "by side, of which some are targets. A pixel of {} x {} with a box filter.",
-        kFocal_mm, kAway_m, kFrame_px.x, kFrame_px.y);
+        kTargetsFocal_mm, kAway_m, kFrame_px.x, kFrame_px.y);
     f.table.columns = {"lamps", "targets", "side (m)", "focus (m)", "met", "variance"};
     for (const double focus_m : {1., 3., 8., 10.})
         for (const double side_m : {0.1, 0.01, 0.001}) {

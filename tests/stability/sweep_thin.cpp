@@ -11,7 +11,7 @@
 namespace petzval::stability {
 namespace {
 
-constexpr double kFocal_mm = 50, kPixel_mm = 0.006;  ///< 6000 pixels on 36 mm
+constexpr double kThinFocal_mm = 50, kThinPixel_mm = 0.006;  ///< 6000 pixels on 36 mm
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 // How far apart formula and trace meet the film that is sharp near the axis.
@@ -27,14 +27,15 @@ double film_error_mm(const SingletOptics& lens, double object_mm, double h_mm) {
 }
 
 AberratedLens singlet_camera(const Glass& glass, double bending, double h_mm, double focus_mm) {
-    return {M44f(), Singlet::bent(glass, kFocal_mm, bending), Iris(Disk{}, h_mm), focus_mm * 1e-3};
+    return {M44f(), Singlet::bent(glass, kThinFocal_mm, bending), Iris(Disk{}, h_mm),
+            focus_mm * 1e-3};
 }
 
 // What the program says of a singlet at that f-number.
 std::string warning_of(const Glass& glass, float fstop) {
     CameraModel plan;
     plan.asked.lens = "singlet:" + glass.name;
-    plan.asked.focal_length_mm = static_cast<float>(kFocal_mm);
+    plan.asked.focal_length_mm = static_cast<float>(kThinFocal_mm);
     plan.asked.fstop = fstop;
     plan.optics = SingleLens{glass, 0, {}};
     std::string said;
@@ -56,7 +57,7 @@ Finding third_order_formula() {
         "off the exact trace's by 1 % and 10 % of the aberration, until the two are a pixel of "
         "{:g} um apart on the film, until no ray comes through, and until the camera refuses the "
         "iris; as f-numbers, f / 2h.",
-        kFocal_mm, kPixel_mm * 1e3);
+        kThinFocal_mm, kThinPixel_mm * 1e3);
     f.table.columns = {
         "object S/f",      "q", "1 % below f/", "10 % below f/", "1 px below f/", "no ray below f/",
         "refused below f/"};
@@ -64,12 +65,12 @@ Finding third_order_formula() {
     double ten_worst = 0, ten_worst_at = 0, px_worst = 0, px_worst_at = 0;
     for (const double q : {0., 1.})
         for (const double s : {kFar, 100., 10., 4., 2., 1.5, 1.2, 1.1, 1.05}) {
-            const SingletOptics lens{n, kFocal_mm, q};
-            const double object_mm = s * kFocal_mm;
+            const SingletOptics lens{n, kThinFocal_mm, q};
+            const double object_mm = s * kThinFocal_mm;
             const auto fnumber = [&](auto fails) -> std::optional<double> {
-                const auto h = first_failure(1e-3 * kFocal_mm, kFocal_mm, fails, 32);
+                const auto h = first_failure(1e-3 * kThinFocal_mm, kThinFocal_mm, fails, 32);
                 if (!h) return std::nullopt;
-                return kFocal_mm / (2 * *h);
+                return kThinFocal_mm / (2 * *h);
             };
             const auto off_by = [&](double most) {
                 return fnumber([&, most](double h_mm) {
@@ -78,7 +79,7 @@ Finding third_order_formula() {
             };
             const auto one = off_by(0.01), ten = off_by(0.1);
             const auto pixel = fnumber(
-                [&](double h_mm) { return film_error_mm(lens, object_mm, h_mm) > kPixel_mm; });
+                [&](double h_mm) { return film_error_mm(lens, object_mm, h_mm) > kThinPixel_mm; });
             const auto no_ray = fnumber([&](double h_mm) {
                 return !traced_spherical_aberration_mm(lens, object_mm, h_mm);
             });
@@ -101,8 +102,9 @@ Finding third_order_formula() {
     f.instead = fmt::format(
         "From 10 % on a warning says from which f-number on the formula holds (at f/1.5: \"{}\"). "
         "An iris at whose rim f(h) falls below half of f is refused: \"{}\".",
-        warning_of(glass, 1.5f),
-        refusal_of([&] { AberratedLensCamera(singlet_camera(glass, 0, 0.7 * kFocal_mm, kFar)); }));
+        warning_of(glass, 1.5f), refusal_of([&] {
+            AberratedLensCamera(singlet_camera(glass, 0, 0.7 * kThinFocal_mm, kFar));
+        }));
     return f;
 }
 
@@ -111,12 +113,12 @@ namespace {
 // Largest distance, in pixels, of a thin lens's rays from the point of the plane in focus at which
 // they all should meet. The camera stands away_m from the origin.
 double spread_px(double closeness, float away_m) {
-    const double focus_mm = kFocal_mm * (1 + closeness), film_mm = focus_mm / closeness;
+    const double focus_mm = kThinFocal_mm * (1 + closeness), film_mm = focus_mm / closeness;
     M44f pose;
     pose[3][0] = pose[3][1] = pose[3][2] = away_m;
     const auto focus_m = static_cast<float>(focus_mm * 1e-3);
     const ThinLensCamera camera({pose, static_cast<float>(2 * std::atan(12 / film_mm)), 1.5f,
-                                 Iris(Disk{}, kFocal_mm / 4), focus_m});
+                                 Iris(Disk{}, kThinFocal_mm / 4), focus_m});
     const double z_m = double(away_m) - double(focus_m);
     double most_px = 0;
     for (const V2f& film : {V2f(0.5f, 0.5f), V2f(0.9f, 0.2f)}) {
@@ -127,7 +129,7 @@ double spread_px(double closeness, float away_m) {
             const V3d o(path.ray.origin), d(path.ray.direction);
             const V3d p = o + d * ((z_m - o.z) / d.z);
             if (!first) first = p;
-            most_px = std::fmax(most_px, (p - *first).length() * 1e3 / (kPixel_mm * closeness));
+            most_px = std::fmax(most_px, (p - *first).length() * 1e3 / (kThinPixel_mm * closeness));
         }
     }
     return most_px;
@@ -171,9 +173,9 @@ Finding focus_near_focal_length() {
         "(1, 1, 1) m (magnification {}) and below {} at the origin; the film's place is off by 1 % "
         "below {}. At S <= f there is no image",
         number(away), number(1 / away.value_or(0)), number(here), number(place));
-    f.instead =
-        fmt::format("Down to the last float the camera renders what it has; for S = f, \"{}\".",
-                    refusal_of([] { static_cast<void>(image_distance_mm(kFocal_mm, kFocal_mm)); }));
+    f.instead = fmt::format(
+        "Down to the last float the camera renders what it has; for S = f, \"{}\".",
+        refusal_of([] { static_cast<void>(image_distance_mm(kThinFocal_mm, kThinFocal_mm)); }));
     return f;
 }
 

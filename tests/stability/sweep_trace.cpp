@@ -10,7 +10,7 @@
 namespace petzval::stability {
 namespace {
 
-constexpr double kPixel_mm = 0.006;
+constexpr double kTracePixel_mm = 0.006;
 
 struct Spread {
     double apart_mm = 0, statuses_differ = 0;
@@ -72,11 +72,11 @@ Finding trace_at_grazing_incidence() {
                 percent(out.statuses_differ));
     }
     const auto sphere =
-        first_failure(0.9, 1e-6, [](double c) { return into_glass(c).apart_mm > kPixel_mm; });
+        first_failure(0.9, 1e-6, [](double c) { return into_glass(c).apart_mm > kTracePixel_mm; });
     const auto losses =
         first_failure(0.9, 1e-6, [](double c) { return into_glass(c).statuses_differ > 0.01; });
-    const auto plane =
-        first_failure(0.9, 1e-6, [](double c) { return out_of_glass(c).apart_mm > kPixel_mm; });
+    const auto plane = first_failure(
+        0.9, 1e-6, [](double c) { return out_of_glass(c).apart_mm > kTracePixel_mm; });
     const auto degrees_off = [](const std::optional<double>& c) {
         return number(c ? std::optional(std::asin(*c) * 180 / std::numbers::pi) : std::nullopt);
     };
@@ -139,8 +139,9 @@ Finding trace_over_long_radii() {
         worst = std::fmax(worst, bent);
     }
     const auto radius =
-        first_failure(1e2, 1e12, [](double r) { return over_radius_mm(r) > kPixel_mm; });
-    const auto afar = first_failure(10, 1e9, [](double d) { return from_afar_mm(d) > kPixel_mm; });
+        first_failure(1e2, 1e12, [](double r) { return over_radius_mm(r) > kTracePixel_mm; });
+    const auto afar =
+        first_failure(10, 1e9, [](double d) { return from_afar_mm(d) > kTracePixel_mm; });
     f.where = fmt::format(
         "Radii: {}, at most {} mm off. Origins: a pixel (6 um) off from a distance of {} mm on",
         radius ? "a pixel off from " + number(radius) + " mm on"

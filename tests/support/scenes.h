@@ -80,10 +80,17 @@ inline Mesh box(V3f low, V3f high) {
     return mesh;
 }
 
-/// Adds the triangles of another mesh, positions alone.
+/// Adds the triangles of another mesh, which has the same attributes.
 inline void append(Mesh& to, const Mesh& more) {
     const auto first = static_cast<uint32_t>(to.positions.size());
-    to.positions.insert(to.positions.end(), more.positions.begin(), more.positions.end());
+    const auto join = [](auto& all, const auto& those) {
+        all.insert(all.end(), those.begin(), those.end());
+    };
+    join(to.positions, more.positions);
+    join(to.normals, more.normals);
+    join(to.tangents, more.tangents);
+    for (size_t set = 0; set < to.uv.size(); ++set) join(to.uv[set], more.uv[set]);
+    join(to.colours, more.colours);
     for (const auto& [a, b, c] : more.triangles)
         to.triangles.push_back({a + first, b + first, c + first});
 }

@@ -14,7 +14,7 @@ class CliGhosts : public CliSpectral {
   protected:
     CliGhosts() { scene_ = PETZVAL_ASSETS "/scenes/ornaments.glb"; }
     [[nodiscard]] static Words coated(const Words& more) {
-        Words words = {"--lens",   "double-gauss-100mm-f2", "--focus", "1m",
+        Words words = {"--lens",   "cooke-triplet-50mm-f5", "--focus", "1m",
                        "--method", "coating=year",          "--size",  "48x32"};
         words.insert(words.end(), more.begin(), more.end());
         return words;

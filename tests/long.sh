@@ -6,7 +6,7 @@
 #
 #   files     each file of the product compiles by itself
 #   address   all tests under the address and undefined-behaviour sanitizers
-#   thread    the tile loop under the thread sanitizer
+#   thread    the tile loop and the search for ghosts under the thread sanitizer
 #   tidy      clang-tidy over the product, by the checks of .clang-tidy
 #   fuzz      the readers of files, and random lenses, FUZZ_SECONDS each (600)
 #   coverage  the share of the product's lines that the tests reach
@@ -25,7 +25,7 @@ address() {
     cmake --preset asan && cmake --build --preset asan &&
         ctest --preset asan --parallel "$(nproc)" --repeat until-pass:2
 }
-thread() { cmake --preset tsan && cmake --build --preset tsan --target integrator_test apps_state_test && ctest --preset tsan; }
+thread() { cmake --preset tsan && cmake --build --preset tsan --target camera_test integrator_test apps_state_test && ctest --preset tsan; }
 # The build writes the compile commands, and a header that some files include.
 tidy() {
     cmake --preset files && cmake --build --preset files --target petzval_io_build || return 1

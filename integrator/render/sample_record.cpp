@@ -22,7 +22,7 @@ void add_holes(const Scene& scene, const V3f& from, const V3f& to, float time,
         if (!scene.materials[mesh.material].cutout()) continue;
         for (uint32_t k = 0; k < mesh.triangles.size(); ++k) {
             const auto [a, b, c] = triangle_corners(scene, i, k, time);
-            V3f at, weights;
+            V3f at(0.f), weights(0.f);
             bool front;
             const bool meets = Imath::intersect({from, to}, a, b, c, at, weights, front);
             const float from_m = (at - from).dot(way), left_m = (to - at).dot(way);

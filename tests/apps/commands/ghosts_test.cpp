@@ -14,8 +14,8 @@ class CliGhosts : public CliSpectral {
   protected:
     CliGhosts() { scene_ = PETZVAL_ASSETS "/scenes/ornaments.glb"; }
     [[nodiscard]] static Words coated(const Words& more) {
-        Words words = {"--lens",   "cooke-triplet-50mm-f5", "--focus", "1m",
-                       "--method", "coating=year",          "--size",  "48x32"};
+        Words words = {"--lens",   "tessar-100mm-f2.8", "--focus", "1m",
+                       "--method", "coating=year",      "--size",  "48x32"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }

@@ -18,7 +18,9 @@
 
 namespace {
 
-using petzval::Session;
+namespace apps = petzval::apps;
+
+using apps::Session;
 
 constexpr const char* kMore = " (--help says more)";
 
@@ -30,20 +32,20 @@ int fail(Session& session, int exit_code, const std::string& what) {
 // Exit code where parsing stopped. Help and the version are "errors" to CLI11 as well.
 int stop_parsing(Session& session, const CLI::App& app, const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    return fail(session, petzval::kUsage, petzval::explanation(app, e) + kMore);
+    return fail(session, apps::kUsage, apps::explanation(app, e) + kMore);
 }
 
 int run(CLI::App& app, std::vector<std::string> words, Session& session) {
     try {
-        petzval::resolve_help(app, words);
+        apps::resolve_help(app, words);
         // CLI11 takes the words from the end of a vector.
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::ParseError& e) {
         return stop_parsing(session, app, e);
-    } catch (const petzval::ValueError& e) {
-        return fail(session, petzval::kUsage, std::string(e.what()) + kMore);
+    } catch (const apps::ValueError& e) {
+        return fail(session, apps::kUsage, std::string(e.what()) + kMore);
     } catch (...) {
-        return petzval::tell_failure(session);
+        return apps::tell_failure(session);
     }
     return session.exit_code;
 }
@@ -58,7 +60,7 @@ bool stdout_reader_has_gone() {
 int finish_stdout(Session& session, int exit_code) {
     const bool flushed = std::fflush(stdout) == 0;
     if ((flushed && std::ferror(stdout) == 0) || stdout_reader_has_gone()) return exit_code;
-    return fail(session, petzval::kOutputFailed, "standard output cannot be written");
+    return fail(session, apps::kOutputFailed, "standard output cannot be written");
 }
 
 }  // namespace
@@ -69,10 +71,10 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     std::vector<std::string> words(argv + 1, argv + argc);
-    const petzval::ConsoleWish wish = petzval::console_wish_of(words);
+    const apps::ConsoleWish wish = apps::console_wish_of(words);
     Session session(wish.style, wish.quiet);
     CLI::App app;
-    petzval::add_all_commands(app, session);
+    apps::add_all_commands(app, session);
     const int exit_code = finish_stdout(session, run(app, std::move(words), session));
     session.console.end(exit_code);
     return exit_code;

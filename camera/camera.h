@@ -12,7 +12,7 @@
 #include "core/sampling/sampler.h"
 #include "core/spectrum/bands.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Pixel filter that drew a film point; nullptr: unknown, and lanes are split where it is asked
 /// for.
@@ -135,4 +135,4 @@ class Camera {
     }
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

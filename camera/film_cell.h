@@ -6,7 +6,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Rectangle of the film, from corner to corner, as FilmPoint has it.
 struct FilmCell {
@@ -19,4 +19,4 @@ struct FilmCell {
     }
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

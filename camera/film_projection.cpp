@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace petzval {
+namespace petzval::camera {
 
 std::optional<Ray> FilmProjection::ray_at(const V2d& px) const {
     FilmPoint point{V2f(px / V2d(size_px_))};  // always the same place of the iris
@@ -41,4 +41,4 @@ std::optional<V2d> FilmProjection::place_of(const V3d& p, const V2d& guess) cons
     return std::nullopt;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 
 #include "camera/camera.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 class FilmProjection {
   public:
@@ -25,4 +25,4 @@ class FilmProjection {
     V2i size_px_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

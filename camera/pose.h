@@ -4,7 +4,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Position of a camera and its axes in world space, unit, as its matrix says. It looks along -z.
 struct Pose {
@@ -22,4 +22,4 @@ struct Pose {
     }
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

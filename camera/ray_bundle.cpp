@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace petzval {
+namespace petzval::camera {
 RayBundle bundle_of(const Camera& camera, const FilmCell& cell, uint32_t seed, V2i drawn_for,
                     int rays) {
     RayBundle out;
@@ -56,4 +56,4 @@ bool has_same_rays(const Camera& a, const Camera& b) {
     return true;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 #include "camera/camera.h"
 #include "camera/film_cell.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Rays of some film points of a cell.
 struct RayBundle {
@@ -24,4 +24,4 @@ struct RayBundle {
 /// Whether two cameras, asked in RGB, have the same rays for a few dozen film points, to the bit.
 [[nodiscard]] bool has_same_rays(const Camera&, const Camera&);
 
-}  // namespace petzval
+}  // namespace petzval::camera

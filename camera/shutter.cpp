@@ -6,7 +6,7 @@
 
 #include "core/math/steps.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 float area_before(const ShutterCurve& curve, size_t point) {
@@ -72,4 +72,4 @@ V3d Shutter::seen_from_middle(const V3f& p, float time) const {
     return V3d(p) * moved(time).inverse();
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 
 #include "core/math/ray.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Openness of a shutter over time, straight between points. Times rise from 0 to 1; openness is
 /// not negative, and above 0 somewhere.
@@ -50,4 +50,4 @@ class Shutter {
     std::vector<M44d> from_middle_;  ///< moves of the camera, at each step
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

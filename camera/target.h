@@ -12,7 +12,7 @@
 #include "camera/film_cell.h"
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// A ball in the scene. It is a window that rays go through, not an object: whatever a ray meets,
 /// the picture stays right, and only its noise depends on where targets are.
@@ -121,4 +121,4 @@ struct TargetGrid {
     }
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

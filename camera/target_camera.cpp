@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::camera {
 
 void TargetCamera::sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
                               std::span<CameraSample> out) const {
@@ -27,4 +27,4 @@ void TargetCamera::sample_all(std::span<const FilmPoint> points, std::span<const
         }
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

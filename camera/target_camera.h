@@ -8,7 +8,7 @@
 #include "camera/camera.h"
 #include "camera/target.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Rays of another camera and, together with them, rays to targets: an estimate without a bias, by
 /// the shares of both (balance heuristic, Veach and Guibas 1995).
@@ -44,4 +44,4 @@ class TargetCamera : public Camera {
     std::shared_ptr<const TargetGrid> targets_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -19,7 +19,7 @@
 #include "io/file/atomic_file.h"
 #include "io/file/rescue.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,10 +32,10 @@ class Folder {
         if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
         made_ = fs::create_directory(path, error);
         if (!fs::is_directory(path))
-            throw OutputError(path.string(), "",
-                              "cannot be made a folder for the report: " +
-                                  (error ? error.message() : "there is a file of that name"));
-        check_writable(path / "report.html");
+            throw io::OutputError(path.string(), "",
+                                  "cannot be made a folder for the report: " +
+                                      (error ? error.message() : "there is a file of that name"));
+        io::check_writable(path / "report.html");
         made_pictures_ = fs::create_directory(path / "pictures", error);
     }
     Folder(const Folder&) = delete;
@@ -56,21 +56,21 @@ class Folder {
 };
 
 /// Refuses a folder whose files, which may be written anew, are among those that are read.
-void refuse_overwriting_in(const fs::path& folder, const std::vector<NamedFile>& inputs) {
+void refuse_overwriting_in(const fs::path& folder, const std::vector<io::NamedFile>& inputs) {
     constexpr std::array<std::string_view, 5> kWritten{".csv", ".html", ".json", ".png", ".svg"};
-    std::vector<NamedFile> there;
+    std::vector<io::NamedFile> there;
     std::error_code error;
     for (const fs::path& of : {folder, folder / "pictures"})
         for (const auto& entry : fs::directory_iterator(of, error))
             if (std::find(kWritten.begin(), kWritten.end(), entry.path().extension().string()) !=
                 kWritten.end())
                 there.push_back({"the report", entry.path()});
-    for (const NamedFile& one : there) refuse_overwriting({one}, inputs);
+    for (const io::NamedFile& one : there) io::refuse_overwriting({one}, inputs);
 }
 
 /// A noise is that of whole cells.
 void leave_out_part_cells(ChartCase& of, const ChartFrame& frame) {
-    const NoiseCells cells{frame.size};
+    const integrator::NoiseCells cells{frame.size};
     if (of.axis != ChartAxis::Noise || cells.whole_cells(frame.crop) == frame.crop) return;
     of.methods.clear();
     of.remarks.push_back(as_options("Left out: ⟨crop⟩ is not of whole cells of a noise; I/N is"));
@@ -90,8 +90,8 @@ void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame
     }
     const double needed = most * frame.crop.width() * frame.crop.height();
     if (const auto shortage = memory_shortage(needed))
-        throw ArgumentError("⟨size⟩", "",
-                            *shortage + "; give a smaller ⟨size⟩, a ⟨crop⟩ or fewer ⟨seeds⟩");
+        throw io::ArgumentError("⟨size⟩", "",
+                                *shortage + "; give a smaller ⟨size⟩, a ⟨crop⟩ or fewer ⟨seeds⟩");
 }
 
 }  // namespace
@@ -102,7 +102,7 @@ ChartRequest chart_of(ChartRequest chart, const RenderRequest& render,
     constexpr std::array<std::string_view, 6> kFiles{".csv",  ".exr", ".html",
                                                      ".json", ".md",  ".png"};
     const std::filesystem::path& folder = chart.subject.folder;
-    if (std::ranges::find(kFiles, lower(folder.extension().string())) != kFiles.end())
+    if (std::ranges::find(kFiles, io::lower(folder.extension().string())) != kFiles.end())
         throw ValueError(
             folder_option,
             fmt::format("a report is a folder, and \"{}\" is named as a file; call it {}",
@@ -116,16 +116,16 @@ ChartRequest chart_of(ChartRequest chart, const RenderRequest& render,
     return chart;
 }
 
-ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, RenderMonitor& monitor,
-                       const Notice& notice,
+ChartOutcome run_chart(const ChartRequest& request, integrator::TbbExecutor& executor,
+                       integrator::RenderMonitor& monitor, const io::Notice& notice,
                        const std::function<void(const MeasuredCase&)>& finished,
                        const ChartClock& clock) {
     const double start_s = clock.wall_s();
     const auto elapsed_s = [&] { return clock.wall_s() - start_s; };
     const double least_s = kLeastChartBudget_s * static_cast<double>(request.axes.size());
     if (request.budget_s < least_s)
-        throw ArgumentError("⟨budget⟩", "", "is too small: {} axes need {:g} s at least",
-                            request.axes.size(), least_s);
+        throw io::ArgumentError("⟨budget⟩", "", "is too small: {} axes need {:g} s at least",
+                                request.axes.size(), least_s);
     std::set<std::string> said;  // notices that one of the views gave
     const auto once = [&](const std::string& text) {
         if (said.insert(text).second) notice(text);
@@ -135,7 +135,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         frame.reference = read_reference(*request.reference, frame.size, frame.crop);
         frame.reference_name = request.reference->filename().string();
     }
-    std::vector<NamedFile> inputs = input_files(request.subject.request);
+    std::vector<io::NamedFile> inputs = input_files(request.subject.request);
     if (request.reference) inputs.push_back({"the file of ⟨reference⟩", *request.reference});
     refuse_overwriting_in(request.subject.folder, inputs);
     Folder folder(request.subject.folder);
@@ -151,7 +151,7 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
     require_memory(cases, frame);
     const bool nothing = std::all_of(cases.begin(), cases.end(),
                                      [](const ChartCase& of) { return of.methods.empty(); });
-    if (nothing) throw ArgumentError("⟨axis⟩", "", cases.front().remarks.front());
+    if (nothing) throw io::ArgumentError("⟨axis⟩", "", cases.front().remarks.front());
 
     double weight_left = 0;
     for (const ChartCase& of : cases) weight_left += of.methods.empty() ? 0 : of.weight;
@@ -180,22 +180,22 @@ ChartOutcome run_chart(const ChartRequest& request, TbbExecutor& executor, Rende
         if (outcome.measured == 0) continue;
         folder.keep();
         try {
-            attempt_all(
+            io::attempt_all(
                 {[&] { write_case(report, report.cases.back()); }, [&] { write_report(report); }});
-        } catch (const InputError& error) {
+        } catch (const io::InputError& error) {
             notice(std::string("warning: ") + error.what() + "; measuring goes on");
             unwritten = error.what();
         }
     }
     if (!unwritten.empty()) {
-        const WriteOutcome points =
-            write_or_rescue(request.subject.folder / "points.csv",
-                            [&](const fs::path& to) { write_points(report, to); });
-        throw OutputError(points.written() ? unwritten : points.message());
+        const io::WriteOutcome points =
+            io::write_or_rescue(request.subject.folder / "points.csv",
+                                [&](const fs::path& to) { write_points(report, to); });
+        throw io::OutputError(points.written() ? unwritten : points.message());
     }
     if (outcome.measured == 0 && !outcome.stopped)
-        throw ArgumentError("⟨budget⟩", "", "is too small for each of the axes");
+        throw io::ArgumentError("⟨budget⟩", "", "is too small for each of the axes");
     return outcome;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 #include "apps/chart/chart_run.h"
 #include "apps/request/render_request.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 struct ChartRequest {
     ChartSubject subject;
@@ -31,9 +31,9 @@ struct ChartOutcome {
 /// within 1.2 times the budget. `finished` sees each case. Throws InputError: faults of scene and
 /// files, a folder that cannot be written; ArgumentError: a budget that is too small, more memory
 /// than there is, nothing to compare.
-[[nodiscard]] ChartOutcome run_chart(const ChartRequest&, TbbExecutor&, RenderMonitor&,
-                                     const Notice& notice,
+[[nodiscard]] ChartOutcome run_chart(const ChartRequest&, integrator::TbbExecutor&,
+                                     integrator::RenderMonitor&, const io::Notice& notice,
                                      const std::function<void(const MeasuredCase&)>& finished,
                                      const ChartClock&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 #include "io/image/difference.h"
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,8 +35,8 @@ figcaption { font-size: .85em }
 )";
 
 std::vector<uint8_t> bytes_of(const fs::path& path) {
-    FileBytes file = read_file(path);
-    if (!file.error.empty()) throw InputError(path.string(), "", file.error);
+    io::FileBytes file = io::read_file(path);
+    if (!file.error.empty()) throw io::InputError(path.string(), "", file.error);
     return std::move(file.bytes);
 }
 
@@ -51,7 +51,7 @@ std::string figure(const fs::path& path, const std::string& caption) {
     return fmt::format(
         "<figure><img alt=\"\" src=\"data:image/png;base64,{}\">"
         "<figcaption>{}</figcaption></figure>\n",
-        encode_base64(bytes_of(path)), xml_text(caption));
+        io::encode_base64(bytes_of(path)), io::xml_text(caption));
 }
 
 std::string with_bounds(const Interval& v) {
@@ -70,7 +70,7 @@ std::string table(const MeasuredCase& of) {
             "td><td>{:.3g}</td>"
             "<td>{:.3g} to {:.3g}</td><td>{:.2f}</td></tr>\n",
             row.believed ? "" : " class=\"doubt\"",
-            xml_text(row.method) + (row.believed ? "" : " (not believed)"), row.point.samples,
+            io::xml_text(row.method) + (row.believed ? "" : " (not believed)"), row.point.samples,
             row.point.cpu_s().mean, with_bounds(row.point.symmetric_mse()),
             with_bounds(row.point.relative_mse()), with_bounds(row.point.flip()), e.mean, e.low,
             e.high, row.to_first);
@@ -101,8 +101,8 @@ std::string pictures(const fs::path& folder, const MeasuredCase& of) {
 std::string section(const ChartReport& report, const MeasuredCase& of) {
     const fs::path& folder = report.subject.folder;
     std::string text =
-        fmt::format("<h2>{}: {}</h2>\n<p>", xml_text(of.of.name), xml_text(of.of.title));
-    for (const std::string& sentence : head_of(report, of)) text += xml_text(sentence) + " ";
+        fmt::format("<h2>{}: {}</h2>\n<p>", io::xml_text(of.of.name), io::xml_text(of.of.title));
+    for (const std::string& sentence : head_of(report, of)) text += io::xml_text(sentence) + " ";
     text += "</p>\n";
     if (of.methods.empty()) return text;
     text += drawing(folder / (of.of.name + ".svg"));
@@ -131,10 +131,11 @@ std::string report_html(const ChartReport& report) {
         "The smaller plots show relative MSE, the mean of (a - b)² / (b² + {5:g}), in which light "
         "that is lost costs little and light that is added much, and FLIP (Andersson et al. 2020), "
         "which is what an eye sees at 67 pixels per degree. {2}.</p>\n",
-        xml_text(report.subject.request.scene.filename().string()), kStyle, program_version(),
-        kSymmetricFloorShare, kMostSymmetricMse, kRelativeMseEpsilon);
+        io::xml_text(report.subject.request.scene.filename().string()), kStyle,
+        io::program_version(), io::kSymmetricFloorShare, io::kMostSymmetricMse,
+        io::kRelativeMseEpsilon);
     for (const MeasuredCase& of : report.cases) text += section(report, of);
     return text + "</body></html>\n";
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

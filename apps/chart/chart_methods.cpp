@@ -19,7 +19,7 @@
 #include "io/file/atomic_file.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Resolved request and camera of a scene, and its number of lights.
@@ -42,12 +42,13 @@ ResolvedScene resolved(const SceneRequest& request, const SetUpView& open) {
 /// Collects the methods of one case.
 class Cases {
   public:
-    Cases(ChartAxis axis, const RenderJob& job, std::string name, std::string title) : job_(job) {
+    Cases(ChartAxis axis, const integrator::RenderJob& job, std::string name, std::string title)
+        : job_(job) {
         case_.axis = axis;
         case_.name = std::move(name);
         case_.title = std::move(title);
     }
-    using Change = std::function<void(SceneRequest&, RenderJob&)>;
+    using Change = std::function<void(SceneRequest&, integrator::RenderJob&)>;
 
     void remark(const std::string& text) { case_.remarks.push_back(as_options(text)); }
     /// Request with a real lens, where wavelengths and rims ask for one: its own, else kChartLens.
@@ -84,14 +85,14 @@ class Cases {
         return method;
     }
 
-    RenderJob job_;
+    integrator::RenderJob job_;
     ChartCase case_;
 };
 
 /// The lens of references, without the errors that a chart looks for.
-void split_in_doubles(SceneRequest& scene, RenderJob&) {
-    scene.camera.dispersion = DispersionMode::Split;
-    scene.camera.precision = Precision::Double;
+void split_in_doubles(SceneRequest& scene, integrator::RenderJob&) {
+    scene.camera.dispersion = camera::DispersionMode::Split;
+    scene.camera.precision = camera::Precision::Double;
 }
 
 std::vector<ChartCase> camera_cases(const ResolvedScene& found, const ChartSubject& subject,
@@ -107,14 +108,17 @@ std::vector<ChartCase> camera_cases(const ResolvedScene& found, const ChartSubje
         fmt::format("Pinhole, thin and singlet stand in the entrance pupil of the lens, "
                     "see {:.4g} degrees as it does when it is focused, and have its iris",
                     *thin.camera.fov_deg));
-    cases.add("pinhole", equivalent_pinhole(lens, setup), [](SceneRequest&, RenderJob&) {});
-    cases.add("thin", thin, [](SceneRequest&, RenderJob&) {});
+    cases.add("pinhole", equivalent_pinhole(lens, setup),
+              [](SceneRequest&, integrator::RenderJob&) {});
+    cases.add("thin", thin, [](SceneRequest&, integrator::RenderJob&) {});
     cases.add("singlet", thin,
-              [](SceneRequest& s, RenderJob&) { s.camera.lens = "singlet:N-BK7"; });
-    cases.add("lens one-ray", lens,
-              [](SceneRequest& s, RenderJob&) { s.camera.dispersion = DispersionMode::Shared; });
-    cases.add("lens", lens,
-              [](SceneRequest& s, RenderJob&) { s.camera.dispersion = DispersionMode::Hero; });
+              [](SceneRequest& s, integrator::RenderJob&) { s.camera.lens = "singlet:N-BK7"; });
+    cases.add("lens one-ray", lens, [](SceneRequest& s, integrator::RenderJob&) {
+        s.camera.dispersion = camera::DispersionMode::Shared;
+    });
+    cases.add("lens", lens, [](SceneRequest& s, integrator::RenderJob&) {
+        s.camera.dispersion = camera::DispersionMode::Hero;
+    });
     cases.reference("the lens, wavelengths always split, rays followed in doubles", lens,
                     split_in_doubles);
     return std::move(cases).result();
@@ -126,12 +130,14 @@ std::vector<ChartCase> dispersion_cases(const ResolvedScene& found, const ChartS
                 "ways to carry wavelengths through the lens");
     SceneRequest lens = cases.with_lens(found);
     lens.spectral.mode = SpectralMode::Wavelengths;
-    const auto with = [](DispersionMode dispersion) {
-        return [dispersion](SceneRequest& s, RenderJob&) { s.camera.dispersion = dispersion; };
+    const auto with = [](camera::DispersionMode dispersion) {
+        return [dispersion](SceneRequest& s, integrator::RenderJob&) {
+            s.camera.dispersion = dispersion;
+        };
     };
-    cases.add("split", lens, with(DispersionMode::Split));
-    cases.add("shared", lens, with(DispersionMode::Shared));
-    cases.add("hero", lens, with(DispersionMode::Hero));
+    cases.add("split", lens, with(camera::DispersionMode::Split));
+    cases.add("shared", lens, with(camera::DispersionMode::Shared));
+    cases.add("hero", lens, with(camera::DispersionMode::Hero));
     cases.remark("shared is biased: it leaves out the colour errors of the lens");
     cases.reference("split, rays followed in doubles with the glasses' own formulas", lens,
                     split_in_doubles);
@@ -142,15 +148,16 @@ std::vector<ChartCase> spectral_cases(const ResolvedScene& found, const ChartSub
                                       const SetUpView&) {
     Cases cases(ChartAxis::Spectral, subject.job, "spectral", "what a path carries");
     const auto with = [](SpectralMode mode) {
-        return [mode](SceneRequest& s, RenderJob&) { s.spectral.mode = mode; };
+        return [mode](SceneRequest& s, integrator::RenderJob&) { s.spectral.mode = mode; };
     };
     cases.add("rgb", found.request, with(SpectralMode::Rgb));
     cases.add("wavelengths", found.request, with(SpectralMode::Wavelengths));
-    cases.add("wavelengths with bins", found.request, [](SceneRequest& s, RenderJob& j) {
-        s.spectral.mode = SpectralMode::Wavelengths;
-        s.spectral.bins = Bins{380, 10, 35};
-        j.replicates = kReplicates;
-    });
+    cases.add("wavelengths with bins", found.request,
+              [](SceneRequest& s, integrator::RenderJob& j) {
+                  s.spectral.mode = SpectralMode::Wavelengths;
+                  s.spectral.bins = Bins{380, 10, 35};
+                  j.replicates = kReplicates;
+              });
     cases.remark("The bins are 35 of 10 nm");
     cases.remark("rgb is biased where light and reflectance multiply by wavelength");
     cases.independent_reference("wavelengths", found.request, with(SpectralMode::Wavelengths));
@@ -161,7 +168,7 @@ std::vector<ChartCase> spectral_cases(const ResolvedScene& found, const ChartSub
 /// is mostly empty.
 std::string write_sliver(const std::filesystem::path& folder) {
     const auto path = folder / "iris-sliver.svg";
-    write_file_atomically(
+    io::write_file_atomically(
         path, std::string_view("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-1000 "
                                "-1000 2000 2000\">\n<rect x=\"-500\" y=\"-0.5\" "
                                "width=\"1000\" height=\"1\" transform=\"rotate(-30)\"/>\n"
@@ -172,7 +179,7 @@ std::string write_sliver(const std::filesystem::path& folder) {
 /// Writes an iris: a disk that darkens towards its rim, as an apodisation filter does.
 std::string write_mask(const std::filesystem::path& folder) {
     constexpr int kSide = 64;
-    Picture mask;
+    io::Picture mask;
     mask.width = mask.height = mask.full_width = mask.full_height = kSide;
     mask.channels = {"R", "G", "B"};
     for (int y = 0; y < kSide; ++y)
@@ -181,7 +188,7 @@ std::string write_mask(const std::filesystem::path& folder) {
             mask.pixels.insert(mask.pixels.end(), 3, float(std::fmax(0, 1 - r * r)));
         }
     const auto path = folder / "iris-mask.png";
-    write_8bit(path, mask);
+    io::write_8bit(path, mask);
     return path.string();
 }
 
@@ -198,21 +205,24 @@ std::vector<ChartCase> iris_cases(const ResolvedScene& found, const ChartSubject
         Cases cases(ChartAxis::Iris, subject.job, "iris-" + name,
                     "ways to draw points of the iris: " + name);
         SceneRequest lens = cases.with_lens(found);
-        lens.camera.dispersion = DispersionMode::Shared;  // the iris is measured, not the glass
+        lens.camera.dispersion =
+            camera::DispersionMode::Shared;  // the iris is measured, not the glass
         cases.remark("One ray for all wavelengths");
         lens.camera.aperture = aperture;
         // A sliver of the round stop's area would reach far beyond the stop's rim.
         const bool sliver = name == "sliver";
-        lens.camera.aperture_scale = sliver ? ApertureScale::Inscribed : ApertureScale::EqualArea;
-        const auto by = [](IrisSampling way) {
-            return [way](SceneRequest& s, RenderJob&) { s.camera.iris_sampling = way; };
+        lens.camera.aperture_scale =
+            sliver ? camera::ApertureScale::Inscribed : camera::ApertureScale::EqualArea;
+        const auto by = [](camera::IrisSampling way) {
+            return [way](SceneRequest& s, integrator::RenderJob&) { s.camera.iris_sampling = way; };
         };
-        for (const IrisSampling way : iris_samplings(parse_aperture(aperture)))
+        for (const camera::IrisSampling way : camera::iris_samplings(io::parse_aperture(aperture)))
             cases.add(name_of(way), lens, by(way));
         if (sliver)
             cases.remark(
                 "1:1000 and aslant: rejection mostly gives up and falls back on triangles");
-        const IrisSampling simple = sliver ? IrisSampling::Triangles : IrisSampling::Rejection;
+        const camera::IrisSampling simple =
+            sliver ? camera::IrisSampling::Triangles : camera::IrisSampling::Rejection;
         cases.independent_reference(name_of(simple), lens, by(simple));
         all.push_back(std::move(cases).result().front());
         all.back().weight = 1. / static_cast<double>(shapes.size());
@@ -227,9 +237,10 @@ std::vector<ChartCase> sampler_cases(const ResolvedScene& found, const ChartSubj
          {std::pair{"independent", SamplerKind::Independent},
           std::pair{"sobol", SamplerKind::Sobol}, std::pair{"owen", SamplerKind::Owen}})
         cases.add(name, found.request,
-                  [way = kind](SceneRequest&, RenderJob& j) { j.sampler = way; });
-    cases.reference("independent points of other seeds", found.request,
-                    [](SceneRequest&, RenderJob& j) { j.sampler = SamplerKind::Independent; });
+                  [way = kind](SceneRequest&, integrator::RenderJob& j) { j.sampler = way; });
+    cases.reference(
+        "independent points of other seeds", found.request,
+        [](SceneRequest&, integrator::RenderJob& j) { j.sampler = SamplerKind::Independent; });
     return std::move(cases).result();
 }
 
@@ -244,7 +255,7 @@ std::vector<ChartCase> lights_cases(const ResolvedScene& found, const ChartSubje
     cases.remark(fmt::format("The scene has {} lights, emissive triangles counted one by one",
                              found.lights));
     const auto with = [](LightChoiceKind kind) {
-        return [kind](SceneRequest& s, RenderJob&) { s.light_choice = kind; };
+        return [kind](SceneRequest& s, integrator::RenderJob&) { s.light_choice = kind; };
     };
     cases.add("uniform", found.request, with(LightChoiceKind::Uniform));
     cases.add("power", found.request, with(LightChoiceKind::Power));
@@ -259,7 +270,7 @@ std::vector<ChartCase> targets_cases(const ResolvedScene& found, const ChartSubj
                 "camera rays to small lamps out of focus");
     const SceneRequest lens = cases.with_lens(found);
     const auto with = [](TargetUse use) {
-        return [use](SceneRequest& s, RenderJob&) { s.targets = use; };
+        return [use](SceneRequest& s, integrator::RenderJob&) { s.targets = use; };
     };
     cases.add("off", lens, with(TargetUse::Off));
     cases.add("auto", lens, with(TargetUse::Auto));
@@ -273,18 +284,18 @@ std::vector<ChartCase> ghosts_cases(const ResolvedScene& found, const ChartSubje
                 "light that surfaces of the lens reflect to the film");
     SceneRequest lens = cases.with_lens(found);
     lens.camera.ghosts = GhostUse::Off;
-    if (lens.camera.coating == Coating::Ideal) {
-        lens.camera.coating = Coating::Year;
+    if (lens.camera.coating == camera::Coating::Ideal) {
+        lens.camera.coating = camera::Coating::Year;
         cases.remark("No surface would reflect: ⟨coating⟩=year was taken");
         try {
             static_cast<void>(open(lens));
-        } catch (const ArgumentError& error) {
+        } catch (const io::ArgumentError& error) {
             cases.remark(std::string("Left out: ") + error.what());
             return std::move(cases).result();
         }
     }
     const auto with = [](GhostUse use) {
-        return [use](SceneRequest& s, RenderJob&) { s.camera.ghosts = use; };
+        return [use](SceneRequest& s, integrator::RenderJob&) { s.camera.ghosts = use; };
     };
     cases.add("off", lens, with(GhostUse::Off));
     cases.add("auto", lens, with(GhostUse::Auto));
@@ -299,7 +310,7 @@ std::vector<ChartCase> diffraction_cases(const ResolvedScene& found, const Chart
                 "light that the iris spreads over the film");
     const SceneRequest lens = cases.with_lens(found);
     const auto with = [](DiffractionUse use) {
-        return [use](SceneRequest& s, RenderJob&) { s.camera.diffraction = use; };
+        return [use](SceneRequest& s, integrator::RenderJob&) { s.camera.diffraction = use; };
     };
     SceneRequest asked = lens;
     asked.camera.diffraction = DiffractionUse::Auto;
@@ -338,20 +349,20 @@ std::vector<ChartCase> precision_cases(const ResolvedScene& found, const ChartSu
     Cases cases(ChartAxis::Precision, subject.job, "precision",
                 "floats and doubles in the lens, robust and fast traversal");
     SceneRequest lens = cases.with_lens(found);
-    lens.camera.dispersion = DispersionMode::Shared;
+    lens.camera.dispersion = camera::DispersionMode::Shared;
     cases.remark("One ray for all wavelengths");
     cases.remark(leak_count(lens, open));
-    const auto with = [](Precision precision, Traversal traversal) {
-        return [=](SceneRequest& s, RenderJob&) {
+    const auto with = [](camera::Precision precision, Traversal traversal) {
+        return [=](SceneRequest& s, integrator::RenderJob&) {
             s.camera.precision = precision;
             s.traversal = traversal;
         };
     };
-    cases.add("float robust", lens, with(Precision::Float, Traversal::Robust));
-    cases.add("double robust", lens, with(Precision::Double, Traversal::Robust));
-    cases.add("float fast", lens, with(Precision::Float, Traversal::Fast));
+    cases.add("float robust", lens, with(camera::Precision::Float, Traversal::Robust));
+    cases.add("double robust", lens, with(camera::Precision::Double, Traversal::Robust));
+    cases.add("float fast", lens, with(camera::Precision::Float, Traversal::Fast));
     cases.independent_reference("double and robust", lens,
-                                with(Precision::Double, Traversal::Robust));
+                                with(camera::Precision::Double, Traversal::Robust));
     return std::move(cases).result();
 }
 
@@ -359,7 +370,7 @@ std::vector<ChartCase> noise_cases(const ResolvedScene& found, const ChartSubjec
                                    const SetUpView&) {
     Cases cases(ChartAxis::Noise, subject.job, "noise",
                 "as many samples of each pixel, or as each part of the frame needs");
-    const auto as_it_is = [](SceneRequest&, RenderJob&) {};
+    const auto as_it_is = [](SceneRequest&, integrator::RenderJob&) {};
     cases.add("samples", found.request, as_it_is);
     cases.add("noise", found.request, as_it_is).to_noise = true;
     cases.independent_reference("the same number of samples", found.request, as_it_is);
@@ -387,10 +398,10 @@ std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>& axes, const Cha
     for (const ChartAxis axis : axes) {
         const Maker& maker = kMakers[static_cast<size_t>(axis)];
         if (maker.needs_lens && found.report.orthographic)
-            throw ArgumentError(subject.request.scene.string(), "",
-                                "axis {} needs a lens, and the camera is orthographic: give "
-                                "⟨camera⟩ or ⟨look-at⟩",
-                                name_of(axis));
+            throw io::ArgumentError(subject.request.scene.string(), "",
+                                    "axis {} needs a lens, and the camera is orthographic: give "
+                                    "⟨camera⟩ or ⟨look-at⟩",
+                                    name_of(axis));
         for (ChartCase& one : maker.make(found, subject, open)) cases.push_back(std::move(one));
     }
     return cases;
@@ -417,8 +428,8 @@ std::vector<ChartAxis> parse_axes(const std::string& option,
         if (std::ranges::find(known, word) == known.end())
             throw ValueError(option,
                              fmt::format("\"{}\" is none of {}{}", word, fmt::join(known, ", "),
-                                         did_you_mean(word, known)));
+                                         io::did_you_mean(word, known)));
     return axes;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -12,7 +12,7 @@
 #include "apps/setup/render_setup.h"
 #include "integrator/render/render_job.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Axes of a chart.
 enum class ChartAxis : uint8_t {
@@ -53,7 +53,7 @@ inline constexpr auto kOptionNames<ChartAxis> =
 struct ChartMethod {
     std::string name;
     SceneRequest scene;
-    RenderJob job;
+    integrator::RenderJob job;
     bool to_noise = false;  ///< instead of a number of samples, n of them stand for 1 / sqrt(n)
 };
 
@@ -73,7 +73,7 @@ inline constexpr const char* kChartLens = "double-gauss-100mm-f2";
 
 struct ChartSubject {
     SceneRequest request;
-    RenderJob job;
+    integrator::RenderJob job;
     std::filesystem::path folder;  ///< where shapes of irises are written
 };
 
@@ -86,4 +86,4 @@ using SetUpView = std::function<RenderSetup(const SceneRequest&)>;
 [[nodiscard]] std::vector<ChartCase> chart_cases(const std::vector<ChartAxis>&, const ChartSubject&,
                                                  const SetUpView&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 template <class F>
@@ -71,4 +71,4 @@ std::vector<size_t> pareto_front(std::span<const std::array<double, 2>> points) 
     return front;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

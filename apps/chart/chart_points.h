@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// 0.975 quantile of Student's t: a series in 1 / degrees (Abramowitz and Stegun 1964, 26.7.5),
 /// within 1e-3 from 4 degrees of freedom on. degrees >= 4.
@@ -44,4 +44,4 @@ struct ChartPoint {
 /// as wrong, and better in one of the two. By increasing cost.
 [[nodiscard]] std::vector<size_t> pareto_front(std::span<const std::array<double, 2>> points);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -17,7 +17,7 @@
 #include "io/image/picture_files.h"
 #include "io/plot/plot.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -36,10 +36,10 @@ std::string file_word(const std::string& name) {
 
 /// Heat map of errors. Black, blue, red, yellow, white: darker to lighter, so that it reads in grey
 /// on paper too.
-Picture heat(const std::vector<float>& errors, const Picture& like) {
+io::Picture heat(const std::vector<float>& errors, const io::Picture& like) {
     constexpr std::array<std::array<float, 3>, 5> kStops{
         {{0, 0, 0}, {0.2f, 0.05f, 0.5f}, {0.8f, 0.2f, 0.3f}, {1, 0.7f, 0.2f}, {1, 1, 1}}};
-    Picture out = like;
+    io::Picture out = like;
     for (size_t i = 0; i < errors.size(); ++i) {
         const float at = std::clamp(errors[i], 0.f, 1.f) * (kStops.size() - 1);
         const size_t below = std::min(static_cast<size_t>(at), kStops.size() - 2);
@@ -51,26 +51,28 @@ Picture heat(const std::vector<float>& errors, const Picture& like) {
 }
 
 /// Pareto front: points of all methods that are believed and that no other beats.
-PlotSeries front_of(const MeasuredCase& of, Measure error) {
+io::PlotSeries front_of(const MeasuredCase& of, Measure error) {
     std::vector<std::array<double, 2>> points;
     for (const MeasuredMethod& method : of.methods)
         for (const ChartPoint& point : method.points)
             if (of.believed(point)) points.push_back({point.cpu_s().mean, (point.*error)().mean});
-    PlotSeries front{{}, PlotStyle::Dashes, "Pareto front"};
+    io::PlotSeries front{{}, io::PlotStyle::Dashes, "Pareto front"};
     front.grey = true;
     for (const size_t i : pareto_front(points)) front.points.push_back(points[i]);
     return front;
 }
 
-Plot plot_of(const MeasuredCase& of, Measure error, const std::string& y_label,
-             std::optional<double> floor) {
-    Plot plot{.title = of.of.title, .x_label = "CPU time (s)", .y_label = y_label, .series = {}};
+io::Plot plot_of(const MeasuredCase& of, Measure error, const std::string& y_label,
+                 std::optional<double> floor) {
+    io::Plot plot{
+        .title = of.of.title, .x_label = "CPU time (s)", .y_label = y_label, .series = {}};
     plot.logarithmic = true;
-    PlotSeries doubted{{}, PlotStyle::Points, "not believed: too near the reference's error"};
+    io::PlotSeries doubted{
+        {}, io::PlotStyle::Points, "not believed: too near the reference's error"};
     doubted.grey = true;
     double first_s = INFINITY, last_s = 0;
     for (const MeasuredMethod& method : of.methods) {
-        PlotSeries series{{}, PlotStyle::LinesAndPoints, method.name};
+        io::PlotSeries series{{}, io::PlotStyle::LinesAndPoints, method.name};
         for (const ChartPoint& point : method.points) {
             const double cpu_s = point.cpu_s().mean;
             const Interval e = (point.*error)();
@@ -82,11 +84,11 @@ Plot plot_of(const MeasuredCase& of, Measure error, const std::string& y_label,
         }
         plot.series.push_back(std::move(series));
     }
-    if (PlotSeries front = front_of(of, error); !front.points.empty())
+    if (io::PlotSeries front = front_of(of, error); !front.points.empty())
         plot.series.push_back(std::move(front));
     if (floor && *floor > 0)
         plot.series.push_back({{{first_s, *floor}, {last_s, *floor}},
-                               PlotStyle::Lines,
+                               io::PlotStyle::Lines,
                                "error of the reference",
                                {},
                                true});
@@ -94,8 +96,9 @@ Plot plot_of(const MeasuredCase& of, Measure error, const std::string& y_label,
     return plot;
 }
 
-void write_plots(const std::filesystem::path& folder, const std::string& name, const Plot& plot) {
-    for (const char* ending : {".svg", ".png"}) write_plot(folder / (name + ending), plot);
+void write_plots(const std::filesystem::path& folder, const std::string& name,
+                 const io::Plot& plot) {
+    for (const char* ending : {".svg", ".png"}) io::write_plot(folder / (name + ending), plot);
 }
 
 Json json_of(const Interval& v) {
@@ -220,7 +223,7 @@ std::filesystem::path reference_picture_name(const MeasuredCase& of) {
 void write_case(const ChartReport& report, const MeasuredCase& of) {
     if (of.methods.empty()) return;
     const auto& folder = report.subject.folder;
-    const DisplayOptions display{.exposure_ev = report.frame.exposure_ev};
+    const io::DisplayOptions display{.exposure_ev = report.frame.exposure_ev};
     std::vector<std::function<void()>> writes{
         [&] {
             write_plots(folder, of.of.name,
@@ -236,25 +239,27 @@ void write_case(const ChartReport& report, const MeasuredCase& of) {
             write_plots(folder, of.of.name + "-flip",
                         plot_of(of, &ChartPoint::flip, "FLIP", of.reference.flip));
         },
-        [&] { write_output(folder / reference_picture_name(of), of.reference.picture, display); }};
+        [&] {
+            io::write_output(folder / reference_picture_name(of), of.reference.picture, display);
+        }};
     for (const MeasuredMethod& method : of.methods)
         writes.emplace_back([&] {
             const PictureNames names = picture_names(of, method);
-            write_output(folder / names.picture, method.picture, display);
-            write_8bit(folder / names.error, heat(method.flip_map, method.picture));
+            io::write_output(folder / names.picture, method.picture, display);
+            io::write_8bit(folder / names.error, heat(method.flip_map, method.picture));
         });
-    attempt_all(writes);
+    io::attempt_all(writes);
 }
 
 void write_points(const ChartReport& report, const std::filesystem::path& csv) {
-    write_file_atomically(csv, std::string_view(csv_of(report)));
+    io::write_file_atomically(csv, std::string_view(csv_of(report)));
 }
 
 void write_report(const ChartReport& report) {
     const auto& folder = report.subject.folder;
     Json cases = Json::array();
     for (const MeasuredCase& of : report.cases) cases.push_back(json_of(of, report.frame));
-    const Json all{{"program", program_version()},
+    const Json all{{"program", io::program_version()},
                    {"scene", report.subject.request.scene.filename().string()},
                    {"size_px", {report.frame.size.x, report.frame.size.y}},
                    {"threads", report.threads},
@@ -262,12 +267,13 @@ void write_report(const ChartReport& report) {
                    {"cases", std::move(cases)}};
     // Names of files need not be UTF-8.
     const std::string json = all.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
-    attempt_all({[&] { write_points(report, folder / "points.csv"); },
-                 [&] { write_file_atomically(folder / "points.json", std::string_view(json)); },
-                 [&] {
-                     write_file_atomically(folder / "report.html",
-                                           std::string_view(report_html(report)));
-                 }});
+    io::attempt_all(
+        {[&] { write_points(report, folder / "points.csv"); },
+         [&] { io::write_file_atomically(folder / "points.json", std::string_view(json)); },
+         [&] {
+             io::write_file_atomically(folder / "report.html",
+                                       std::string_view(report_html(report)));
+         }});
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

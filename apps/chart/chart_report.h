@@ -7,7 +7,7 @@
 
 #include "apps/chart/chart_run.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 struct ChartReport {
     ChartSubject subject;  ///< its folder is where the files go
@@ -52,4 +52,4 @@ struct PictureNames {
 [[nodiscard]] PictureNames picture_names(const MeasuredCase&, const MeasuredMethod&);
 [[nodiscard]] std::filesystem::path reference_picture_name(const MeasuredCase&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,13 +8,14 @@
 
 #include "apps/plan/noise_setup.h"
 #include "apps/setup/develop.h"
+#include "apps/setup/tracer.h"
 #include "integrator/render/render.h"
 #include "integrator/render/render_to_noise.h"
 #include "io/image/difference.h"
 #include "io/image/picture_files.h"
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr double kReferenceShare = 0.4;  ///< at most; counts that grow in steps use 0.25 to 0.4
@@ -34,8 +35,8 @@ class Stopwatch {
 /// What all renders of a chart share.
 struct ChartContext {
     const ChartFrame& frame;
-    TbbExecutor& executor;
-    RenderMonitor& monitor;
+    integrator::TbbExecutor& executor;
+    integrator::RenderMonitor& monitor;
     const ChartClock& clock;
 };
 
@@ -46,13 +47,10 @@ class MethodRenders {
                   uint32_t first_seed, uint32_t seeds)
         : job_(method.job), setup_(std::move(setup)), at_(at), first_seed_(first_seed) {
         job_.observer = setup_.view.observer;
-        PathOptions options;
-        options.visible_background = setup_.view.visible_background;
-        const PreparedScene& prepared = setup_.prepared;
-        tracer_.emplace(*prepared.scene, *prepared.bvh, *prepared.lights, options);
+        tracer_.emplace(tracer_of(setup_, {}));
         const double start_s = at_.clock.cpu_s();
         if (method.to_noise)
-            noise_ = noise_target(setup_, job_, options, at_.frame.size, 1, at_.executor);
+            noise_ = noise_target(setup_, job_, {}, at_.frame.size, 1, at_.executor);
         cpu_s_.resize(seeds, at_.clock.cpu_s() - start_s);
         for (uint32_t i = 0; i < seeds; ++i) films_.push_back(new_film());
     }
@@ -82,7 +80,7 @@ class MethodRenders {
     [[nodiscard]] uint32_t seed_count() const { return static_cast<uint32_t>(films_.size()); }
     [[nodiscard]] uint32_t seed(uint32_t i) const { return first_seed_ + i; }
     [[nodiscard]] double cpu_s(uint32_t i) const { return cpu_s_[i]; }
-    [[nodiscard]] Picture picture(uint32_t i) const { return colours_of(films_[i], 3); }
+    [[nodiscard]] io::Picture picture(uint32_t i) const { return colours_of(films_[i], 3); }
 
     double spent_s = 0, last_s = 0;  ///< wall time of all turns, and of the last level
     [[nodiscard]] double next_s() const { return 2.1 * last_s; }
@@ -96,54 +94,55 @@ class MethodRenders {
                 {.blocks = noise_ != nullptr}};
     }
     bool render_into(Film& film, uint32_t seed, uint32_t end, double& cpu_s) {
-        RenderJob job = job_;
+        integrator::RenderJob job = job_;
         job.seed = first_seed_ + seed;
         job.end_sample = end;
-        const Camera& camera = *setup_.view.camera;
+        const camera::Camera& camera = *setup_.view.camera;
         const double start_s = at_.clock.cpu_s();
-        RenderResult result;
+        integrator::RenderResult result;
         if (noise_) {
             constexpr uint32_t kMostOfLevel = 64;  // times as many as other pictures have
-            auto level = std::make_shared<NoiseTarget>(*noise_);
+            auto level = std::make_shared<integrator::NoiseTarget>(*noise_);
             level->noise = 1 / std::sqrt(double(end));
             job.noise = level;
-            job.end_sample = std::max(kLeastOfCell, kMostOfLevel * end);
-            result = render_to_noise(*tracer_, camera, job, film, at_.executor, at_.monitor);
+            job.end_sample = std::max(integrator::kLeastOfCell, kMostOfLevel * end);
+            result =
+                integrator::render_to_noise(*tracer_, camera, job, film, at_.executor, at_.monitor);
         } else {
-            result = render(*tracer_, camera, job, film, at_.executor, at_.monitor);
+            result = integrator::render(*tracer_, camera, job, film, at_.executor, at_.monitor);
         }
         cpu_s += at_.clock.cpu_s() - start_s;
         return !result.stopped;
     }
 
-    RenderJob job_;
+    integrator::RenderJob job_;
     RenderSetup setup_;
     const ChartContext& at_;
     uint32_t first_seed_, samples_ = 0;
-    std::shared_ptr<const NoiseTarget> noise_;  ///< empty: numbers of samples
-    std::optional<PathTracer<>> tracer_;
+    std::shared_ptr<const integrator::NoiseTarget> noise_;  ///< empty: numbers of samples
+    std::optional<integrator::PathTracer<>> tracer_;
     std::vector<Film> films_;
     std::vector<double> cpu_s_;
 };
 
-Picture mean_of(const std::vector<Picture>& parts) {
-    Picture mean = parts.front();
+io::Picture mean_of(const std::vector<io::Picture>& parts) {
+    io::Picture mean = parts.front();
     for (size_t i = 0; i < mean.pixels.size(); ++i) {
         double sum = 0;
-        for (const Picture& part : parts) sum += double(part.pixels[i]);
+        for (const io::Picture& part : parts) sum += double(part.pixels[i]);
         mean.pixels[i] = static_cast<float>(sum / static_cast<double>(parts.size()));
     }
     return mean;
 }
 
 /// Mean of the variance of the parts' mean, over what the symmetric MSE divides by.
-double symmetric_variance(const std::vector<Picture>& parts, double floor) {
+double symmetric_variance(const std::vector<io::Picture>& parts, double floor) {
     const auto n = static_cast<double>(parts.size());
     double total = 0;
     for (size_t i = 0; i < parts.front().pixels.size(); ++i) {
-        const auto value = [i](const Picture& part) { return double(part.pixels[i]); };
+        const auto value = [i](const io::Picture& part) { return double(part.pixels[i]); };
         double sum = 0, variance = 0;
-        for (const Picture& part : parts) sum += value(part);
+        for (const io::Picture& part : parts) sum += value(part);
         // From each two parts, over the mean of the others: a part that is too bright by chance
         // would hide its own error where it were in both.
         for (auto j = parts.begin(); j != parts.end(); ++j)
@@ -153,20 +152,21 @@ double symmetric_variance(const std::vector<Picture>& parts, double floor) {
                 const double scale = others * others + floor * floor;
                 if (scale > 0) variance += difference * difference / scale / (n * (n - 1)) / n;
             }
-        total += std::min(variance, kMostSymmetricMse);  // no pixel adds more to what is measured
+        total +=
+            std::min(variance, io::kMostSymmetricMse);  // no pixel adds more to what is measured
     }
     return total / static_cast<double>(parts.front().pixels.size());
 }
 
 /// Mean of the variance of the parts' mean, over what the relative MSE divides by.
-double relative_variance(const std::vector<Picture>& parts, const Picture& mean) {
+double relative_variance(const std::vector<io::Picture>& parts, const io::Picture& mean) {
     const auto n = static_cast<double>(parts.size());
     double sum = 0;
     for (size_t i = 0; i < mean.pixels.size(); ++i) {
         const double m = double(mean.pixels[i]);
         double squares = 0;
-        for (const Picture& part : parts) squares += std::pow(double(part.pixels[i]) - m, 2);
-        sum += squares / (n - 1) / n / (m * m + kRelativeMseEpsilon);
+        for (const io::Picture& part : parts) squares += std::pow(double(part.pixels[i]) - m, 2);
+        sum += squares / (n - 1) / n / (m * m + io::kRelativeMseEpsilon);
     }
     return sum / static_cast<double>(mean.pixels.size());
 }
@@ -202,7 +202,7 @@ std::optional<ChartReference> render_reference(const ChartMethod& method, Render
         else
             break;
     }
-    std::vector<Picture> parts;
+    std::vector<io::Picture> parts;
     double cpu_s = 0;
     for (uint32_t i = 0; i < kReferenceReplicates; ++i) {
         parts.push_back(renders.picture(i));
@@ -300,7 +300,7 @@ class CaseMeasurement {
             renders.reached(doubled(renders));
             ChartPoint point{renders.mean_samples(), {}};
             for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed) {
-                Picture picture = renders.picture(seed);
+                io::Picture picture = renders.picture(seed);
                 ChartSeed& measured =
                     point.seeds.emplace_back(errors_of(picture, reference_.picture, flip_));
                 measured.seed = renders.seed(seed);
@@ -319,10 +319,10 @@ class CaseMeasurement {
 
     const ChartContext& at_;
     const ChartReference& reference_;
-    Flip flip_;
+    io::Flip flip_;
     std::vector<MethodRenders> renders_;
     std::vector<MeasuredMethod> methods_;
-    std::vector<std::vector<Picture>> pictures_;  ///< of the first seed, at each level
+    std::vector<std::vector<io::Picture>> pictures_;  ///< of the first seed, at each level
 };
 
 }  // namespace
@@ -331,42 +331,45 @@ bool MeasuredCase::believed(const ChartPoint& point) const {
     return !reference.symmetric_mse || point.symmetric_mse().mean >= 2 * *reference.symmetric_mse;
 }
 
-ChartSeed errors_of(const Picture& picture, const Picture& reference, const Flip& flip) {
-    const LayerDifference rgb = compare(picture, reference).front();
+ChartSeed errors_of(const io::Picture& picture, const io::Picture& reference,
+                    const io::Flip& flip) {
+    const io::LayerDifference rgb = io::compare(picture, reference).front();
     return {.symmetric_mse = rgb.symmetric_mse.value(),
             .relative_mse = rgb.relative_mse,
             .flip = flip.mean(picture)};
 }
 
-ChartReference reference_of(const std::vector<Picture>& parts, float exposure_ev) {
+ChartReference reference_of(const std::vector<io::Picture>& parts, float exposure_ev) {
     ChartReference reference;
     reference.parts = static_cast<uint32_t>(parts.size());
     reference.picture = mean_of(parts);
-    reference.symmetric_mse = symmetric_variance(parts, floor_against(reference.picture).value());
+    reference.symmetric_mse =
+        symmetric_variance(parts, io::floor_against(reference.picture).value());
     reference.relative_mse = relative_variance(parts, reference.picture);
     const auto middle = parts.begin() + static_cast<long>(parts.size() / 2);
-    reference.flip =
-        Flip(mean_of({parts.begin(), middle}), exposure_ev).mean(mean_of({middle, parts.end()}));
+    reference.flip = io::Flip(mean_of({parts.begin(), middle}), exposure_ev)
+                         .mean(mean_of({middle, parts.end()}));
     return reference;
 }
 
-Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {
-    const Picture read = read_picture(path);
+io::Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {
+    const io::Picture read = io::read_picture(path);
     if (read.for_display)
-        throw InputError(path.string(), "",
-                         "holds values for a display, not light; give a rendered EXR");
-    Picture picture = colours_of(Film(size, crop, {}), 3);
-    const std::array<int, 3> from{channel_index(read, "R"), channel_index(read, "G"),
-                                  channel_index(read, "B")};
+        throw io::InputError(path.string(), "",
+                             "holds values for a display, not light; give a rendered EXR");
+    io::Picture picture = colours_of(Film(size, crop, {}), 3);
+    const std::array<int, 3> from{io::channel_index(read, "R"), io::channel_index(read, "G"),
+                                  io::channel_index(read, "B")};
     if (*std::min_element(from.begin(), from.end()) < 0)
-        throw InputError(path.string(), "", "has no channels R, G and B; give a rendered EXR");
+        throw io::InputError(path.string(), "", "has no channels R, G and B; give a rendered EXR");
     if (read.width != picture.width || read.height != picture.height || read.x != picture.x ||
         read.y != picture.y || read.full_width != size.x || read.full_height != size.y)
-        throw InputError(path.string(), "",
-                         "has {}x{} pixels from {},{} of {}x{}, and the chart {}x{} "
-                         "from {},{} of {}x{}; give the same ⟨size⟩ and ⟨crop⟩",
-                         read.width, read.height, read.x, read.y, read.full_width, read.full_height,
-                         picture.width, picture.height, picture.x, picture.y, size.x, size.y);
+        throw io::InputError(path.string(), "",
+                             "has {}x{} pixels from {},{} of {}x{}, and the chart {}x{} "
+                             "from {},{} of {}x{}; give the same ⟨size⟩ and ⟨crop⟩",
+                             read.width, read.height, read.x, read.y, read.full_width,
+                             read.full_height, picture.width, picture.height, picture.x, picture.y,
+                             size.x, size.y);
     for (size_t i = 0; i < picture.pixels.size() / 3; ++i)
         for (size_t c = 0; c < 3; ++c)
             picture.pixels[3 * i + c] =
@@ -375,8 +378,9 @@ Picture read_reference(const std::filesystem::path& path, V2i size, Rect crop) {
 }
 
 std::optional<MeasuredCase> measure(const ChartCase& of, const ChartFrame& frame, double budget_s,
-                                    TbbExecutor& executor, RenderMonitor& monitor,
-                                    const SetUpView& open, const ChartClock& times) {
+                                    integrator::TbbExecutor& executor,
+                                    integrator::RenderMonitor& monitor, const SetUpView& open,
+                                    const ChartClock& times) {
     const Stopwatch clock(times);
     MeasuredCase out;
     out.of = of;
@@ -399,4 +403,4 @@ std::optional<MeasuredCase> measure(const ChartCase& of, const ChartFrame& frame
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

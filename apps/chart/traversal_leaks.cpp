@@ -6,7 +6,7 @@
 
 #include "core/sampling/warp.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr size_t kMostTriangles = 1u << 18;  // of a mesh
@@ -112,4 +112,4 @@ size_t traversal_leaks(const Bvh& bvh, const std::vector<Ray>& shared_edge_rays)
                                              [&](const Ray& r) { return !bvh.intersect(r); }));
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

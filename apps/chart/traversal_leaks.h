@@ -7,7 +7,7 @@
 
 #include "core/traversal/bvh.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// `count` rays aimed at random points of random edges that two opaque triangles of a mesh share,
 /// one on either side of the edge as the ray sees it. Each starts one length of its edge away and
@@ -18,4 +18,4 @@ namespace petzval {
 /// Number of rays that meet nothing: each went through between two triangles.
 [[nodiscard]] size_t traversal_leaks(const Bvh&, const std::vector<Ray>& shared_edge_rays);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -7,7 +7,7 @@
 
 #include "apps/request/parse_choice.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Adds an option whose value is one of the choices, whatever the case. Any other word ends with
 /// exit code 2 and the list of the known ones. value, a T or something that one can be assigned to,
@@ -28,4 +28,4 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
     return add_choice<T>(app, name, value, choices_of<T>(), help);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

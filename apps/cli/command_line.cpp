@@ -21,7 +21,7 @@
 #include "io/base/printable.h"
 #include "io/gltf/validate/foreign.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -78,7 +78,7 @@ std::string near_options(const CLI::App& app, const std::string& typed) {
     if (app.get_option_no_throw("--method"))
         for (const RequestField& field : request_fields())
             if (field.level == FieldLevel::Method) names.push_back(field.name);
-    Words near = words_near(bare, names);
+    Words near = io::words_near(bare, names);
     const auto begins = [&](const std::string& name) { return name.starts_with(bare); };
     if (bare.size() == 1) std::ranges::copy_if(names, std::back_inserter(near), begins);
     for (std::string& name : near)
@@ -115,18 +115,19 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
     Words names;
     for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
     const std::filesystem::path file(word);
-    const std::string ending = lower(file.extension().string());
+    const std::string ending = io::lower(file.extension().string());
     if (!app.get_parent() && (ending == ".glb" || ending == ".gltf"))
         return fmt::format(
             "\"{0}\" is no command; to render it type {1} render {2} -o {3}, to see what is in it "
             "{1} info {2}",
-            word, app.get_name(), for_shell(word), for_shell(file.stem().string() + ".png"));
-    const std::string foreign = foreign_scene_advice(file);
+            word, app.get_name(), io::for_shell(word),
+            io::for_shell(file.stem().string() + ".png"));
+    const std::string foreign = io::foreign_scene_advice(file);
     if (!app.get_parent() && !foreign.empty()) return word + ": " + foreign;
     if (app.get_option_no_throw("--" + word))
         return fmt::format("\"{0}\" is no command; did you mean --{0}?", word);
     return fmt::format("\"{}\" is no command{}", word,
-                       did_you_mean_or("there are " + full_name(app), word, names));
+                       io::did_you_mean_or("there are " + full_name(app), word, names));
 }
 
 std::string missing_command(const CLI::App& app) {
@@ -140,7 +141,7 @@ std::string about_word(const CLI::App& command, const CLI::ParseError& error,
                        const std::string& word) {
     if (is(error, CLI::ExitCodes::RequiredError) && command.get_option_no_throw("--output") &&
         complaint_about_picture_name(word).empty())
-        return fmt::format("{}; did you mean -o {}?", error.what(), for_shell(word));
+        return fmt::format("{}; did you mean -o {}?", error.what(), io::for_shell(word));
     if (is(error, CLI::ExitCodes::ExtrasError))
         return fmt::format("{} has no place for \"{}\"", full_name(command), word);
     return "";
@@ -217,4 +218,4 @@ std::string explanation(const CLI::App& app, const CLI::ParseError& error) {
     return what;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Makes every command that writes one file refuse two outputs, of which one would be lost. Of
 /// other options that are given twice the last holds.
@@ -23,4 +23,4 @@ void resolve_help(CLI::App&, std::vector<std::string>& words);
 /// Explanation of why words were not parsed, with what may have been meant.
 [[nodiscard]] std::string explanation(const CLI::App&, const CLI::ParseError&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Commands right below one.
 [[nodiscard]] inline std::vector<const CLI::App*> commands_of(const CLI::App& app) {
@@ -51,4 +51,4 @@ namespace petzval {
     return true;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -17,7 +17,7 @@
 #include "io/base/printable.h"
 #include "io/file/atomic_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr std::string_view kWarning = "warning: ";
@@ -49,7 +49,8 @@ ConsoleWish console_wish(const std::vector<std::string>& words) {
     if (words.empty() || (words.front() != "render" && words.front() != "resume")) return wish;
     const auto take = [&](std::string_view value) {
         wish.asks_progress = true;
-        wish.style = lower(std::string(value)) == "json" ? ConsoleStyle::Json : ConsoleStyle::Text;
+        wish.style =
+            io::lower(std::string(value)) == "json" ? ConsoleStyle::Json : ConsoleStyle::Text;
     };
     constexpr std::string_view kOption = "--progress", kWithValue = "--progress=";
     for (size_t i = 0; i < words.size(); ++i) {
@@ -61,7 +62,7 @@ ConsoleWish console_wish(const std::vector<std::string>& words) {
 
 void print_error_line(std::string line) noexcept {
     try {
-        line = visible(as_options(line));
+        line = io::visible(as_options(line));
     } catch (const std::exception&) {  // no memory: nothing but plain characters, in place
         for (char& c : line)
             if (c < 0x20 || c == 0x7F) c = '?';
@@ -72,7 +73,7 @@ void print_error_line(std::string line) noexcept {
 }
 
 void print_line(const std::string& line) {
-    fmt::print("{}\n", visible(as_options(line)));
+    fmt::print("{}\n", io::visible(as_options(line)));
 }
 
 void print_notice(const std::string& text) {
@@ -137,16 +138,17 @@ void Console::event(const char* name, const Json& fields) {
 void Console::log_to(const std::filesystem::path& file) {
     std::error_code error;
     if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
-        throw OutputError(file.string(), "", "is no file; a log needs one");
-    check_writable(file);
+        throw io::OutputError(file.string(), "", "is no file; a log needs one");
+    io::check_writable(file);
     std::ifstream before(file);
     if (std::string line; std::getline(before, line) && !is_log_line(line))
-        throw ArgumentError(file.string(), "",
-                            "is no log of this program's, and messages would be added to it; name "
-                            "another file");
+        throw io::ArgumentError(
+            file.string(), "",
+            "is no log of this program's, and messages would be added to it; name "
+            "another file");
     const std::lock_guard lock(mutex_);
     log_.open(file, std::ios::app);
-    if (!log_) throw OutputError(file.string(), "", "cannot be written");
+    if (!log_) throw io::OutputError(file.string(), "", "cannot be written");
 }
 
 void Console::end(int exit_code) {
@@ -172,7 +174,8 @@ void Console::log(const std::string& text) {
     gmtime_r(&now, &utc);
     std::array<char, 32> time{};
     std::strftime(time.data(), time.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-    log_ << time.data() << ' ' << visible(text) << std::endl;  // flushed: the next may be the last
+    log_ << time.data() << ' ' << io::visible(text)
+         << std::endl;  // flushed: the next may be the last
     if (log_) return;
     log_.close();
     print_error_line("petzval: warning: the log cannot be written any more");
@@ -201,4 +204,4 @@ void Console::clear_live_line() {
     live_ = false;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

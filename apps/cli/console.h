@@ -14,7 +14,7 @@
 
 #include "apps/cli/stderr_capture.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Prints one line on stderr, every character visible() (io/base/printable.h). Never throws: where
 /// stderr cannot be written there is nobody to tell.
@@ -89,4 +89,4 @@ class Console {
     std::optional<StderrCapture> capture_;  // last: its thread uses the rest
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

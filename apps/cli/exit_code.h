@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Exit codes of the program; docs/guide/render.md lists them.
 inline constexpr int kSuccess = 0;
@@ -12,4 +12,4 @@ inline constexpr int kOutOfMemory = 4;
 inline constexpr int kNoiseLeft = 5;  ///< pictures are written, with more noise than was asked for
 inline constexpr int kStopped = 130;  ///< by any of the signals that Interrupt waits for
 
-}  // namespace petzval
+}  // namespace petzval::apps

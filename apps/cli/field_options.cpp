@@ -10,7 +10,7 @@
 #include "io/base/nearest.h"
 #include "io/base/printable.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Word quoted for a shell, where it needs it. What is hidden is written as escapes, which bash, ksh
@@ -19,11 +19,11 @@ std::string quoted(const std::string& word) {
     constexpr std::string_view kPlain =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,=%+@";
     if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-    if (visible(word) != word) {
+    if (io::visible(word) != word) {
         std::string escaped;
         for (const char c : word)
             escaped += c == '\\' || c == '\'' ? std::string("\\") + c : std::string(1, c);
-        return "$'" + visible(escaped) + "'";
+        return "$'" + io::visible(escaped) + "'";
     }
     std::string out = "'";
     for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -86,8 +86,9 @@ void set_method(const std::vector<RequestField>& methods, RenderOrder& order,
         if (at == text.npos) throw CLI::ValidationError("--method " + name, "needs =VALUE");
         return as_typed([&] { field.set(order, text.substr(at + 1)); });
     }
-    throw CLI::ValidationError("--method", fmt::format("\"{}\" is none{}", name,
-                                                       did_you_mean_or("there are", name, known)));
+    throw CLI::ValidationError(
+        "--method",
+        fmt::format("\"{}\" is none{}", name, io::did_you_mean_or("there are", name, known)));
 }
 
 // Declares --method for fields that compare methods; --help all has them below the options.
@@ -164,4 +165,4 @@ std::string render_command(const RenderOrder& order) {
     return command;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -13,7 +13,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Declares the options of all fields that a command takes; they write to the order, which must
 /// outlive the parsing.
@@ -32,4 +32,4 @@ void hide_expert_options(CLI::App&);
 /// Command that renders an order, quoted for a shell where that is needed.
 [[nodiscard]] std::string render_command(const RenderOrder&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 
 #include "apps/cli/exit_code.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 struct Known {
@@ -91,13 +91,13 @@ void Interrupt::watch(const std::stop_token& stop) {
         if (!known) continue;
         if (!armed_) _exit(kStopped);
         if (!first_s) {
-            first_s = steady_s();
+            first_s = integrator::steady_s();
             signal_ = signal;
             monitor_.stop = true;
-        } else if (steady_s() - *first_s > known->same_s) {
+        } else if (integrator::steady_s() - *first_s > known->same_s) {
             _exit(kStopped);
         }
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 
 #include "integrator/render/render_job.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Handling of SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1 and SIGUSR2: while it lives, a thread of
 /// its own waits for them instead of their being delivered, so there is no shared state. Create it
@@ -24,7 +24,7 @@ class Interrupt {
     Interrupt& operator=(const Interrupt&) = delete;
 
     /// Monitor of the render that a signal stops.
-    [[nodiscard]] RenderMonitor& monitor() { return monitor_; }
+    [[nodiscard]] integrator::RenderMonitor& monitor() { return monitor_; }
     /// From now on a signal asks the render to stop.
     void arm() { armed_ = true; }
     /// Name of the signal that asked for it, as SIGINT; nullptr where none did.
@@ -33,11 +33,11 @@ class Interrupt {
   private:
     void watch(const std::stop_token&);
 
-    RenderMonitor monitor_;
+    integrator::RenderMonitor monitor_;
     std::atomic<bool> armed_ = false;
     std::atomic<int> signal_ = 0;
     sigset_t signals_;
     std::jthread thread_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

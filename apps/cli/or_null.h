@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// The value in JSON; null where there is none.
 template <class T>
@@ -12,4 +12,4 @@ template <class T>
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr int kUsualColumns = 40;  ///< of a line for nobody knows what
@@ -42,7 +42,7 @@ Console::Json json_of(const ProgressFigures& f) {
 
 }  // namespace
 
-Progress::Progress(ProgressStyle style, Console& console, const RenderMonitor& monitor,
+Progress::Progress(ProgressStyle style, Console& console, const integrator::RenderMonitor& monitor,
                    const ProgressGoal& goal)
     : style_(style), console_(console), monitor_(monitor), goal_(goal) {
     if (style_ == ProgressStyle::Auto)
@@ -66,7 +66,7 @@ void Progress::begin(Phase phase) {
     if (phase == phase_) return;
     end_phase();
     phase_ = phase;
-    phase_start_s_ = steady_s();
+    phase_start_s_ = integrator::steady_s();
     if (style_ == ProgressStyle::Json || style_ == ProgressStyle::Bar) show_now();
 }
 
@@ -124,7 +124,7 @@ PhaseTimes Progress::times() const {
 }
 
 double Progress::phase_s() const {
-    return steady_s() - phase_start_s_;
+    return integrator::steady_s() - phase_start_s_;
 }
 
 void Progress::end_phase() {
@@ -169,4 +169,4 @@ void Progress::show_now() {
                                  {"ended", false}});
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -13,7 +13,7 @@
 #include "apps/request/render_order.h"
 #include "integrator/render/render_job.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Wall time of each phase, in seconds.
 using PhaseTimes = std::array<double, static_cast<size_t>(Phase::Count)>;
@@ -21,7 +21,7 @@ using PhaseTimes = std::array<double, static_cast<size_t>(Phase::Count)>;
 /// Shows the phases of a render and its progress from a thread of its own until it is destroyed.
 class Progress {
   public:
-    Progress(ProgressStyle, Console&, const RenderMonitor&, const ProgressGoal&);
+    Progress(ProgressStyle, Console&, const integrator::RenderMonitor&, const ProgressGoal&);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -48,7 +48,7 @@ class Progress {
 
     ProgressStyle style_;
     Console& console_;
-    const RenderMonitor& monitor_;
+    const integrator::RenderMonitor& monitor_;
     ProgressGoal goal_;
     mutable std::mutex mutex_;
     Phase phase_ = Phase::Count;  ///< none yet
@@ -59,4 +59,4 @@ class Progress {
     std::jthread thread_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 
 #include "io/base/format.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr double kYear_s = 365.25 * 86400;
@@ -90,7 +90,7 @@ std::string progress_line(const ProgressFigures& f, int columns, ProgressBar wit
     enum Part { Percent, Noise, Rate, Elapsed, Left, Count };
     std::array<std::string, Count> texts;
     texts[Percent] = percent_text(f.fraction);
-    if (f.noise > 0) texts[Noise] = "noise " + percent(f.noise);
+    if (f.noise > 0) texts[Noise] = "noise " + io::percent(f.noise);
     texts[Rate] = rate_text(f.samples_per_s);
     texts[Elapsed] = duration_text(f.elapsed_s);
     if (f.fraction < 1) {
@@ -126,4 +126,4 @@ std::string phase_line(Phase phase, double elapsed_s, int columns) {
                columns);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

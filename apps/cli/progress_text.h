@@ -9,7 +9,7 @@
 
 #include "apps/setup/phase.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Ends of a render: whichever comes first.
 struct ProgressGoal {
@@ -44,4 +44,4 @@ enum class ProgressBar : bool { No, Yes };
 /// The same of another phase, of which only the time is known.
 [[nodiscard]] std::string phase_line(Phase, double elapsed_s, int columns);
 
-}  // namespace petzval
+}  // namespace petzval::apps

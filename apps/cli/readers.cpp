@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Reader that leaves what `parse` makes of a text.
@@ -35,4 +35,4 @@ CLI::Validator whole_number_between(uint64_t least, uint64_t most) {
         [=](const std::string& text) { return parse_whole_number("", text, least, most); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

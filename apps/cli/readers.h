@@ -11,7 +11,7 @@ namespace CLI {
 class Validator;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Reader of a number as parse_number() takes it. Leaves a plain number in the first unit, as "0.3"
 /// for "30cm".
@@ -20,4 +20,4 @@ namespace petzval {
 /// Reader of a whole number as parse_whole_number() takes it.
 [[nodiscard]] CLI::Validator whole_number_between(uint64_t least, uint64_t most);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <utility>
 
-namespace petzval {
+namespace petzval::apps {
 
 StderrCapture::StderrCapture(std::function<void(std::string)> line)
     : line_(std::move(line)), before_(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3)) {
@@ -48,4 +48,4 @@ void StderrCapture::read_lines() const {
     if (!text.empty()) pass_on(text.size());
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

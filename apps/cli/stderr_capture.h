@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Takes over stderr of the whole process while it lives: each line that anything prints there,
 /// libpng say, goes to a function, which a thread of its own calls. Where there is no stderr or no
@@ -29,4 +29,4 @@ class StderrCapture {
     std::thread thread_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

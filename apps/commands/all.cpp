@@ -14,13 +14,13 @@
 #include "apps/commands/trace_sample.h"
 #include "io/build/build.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 void add_all_commands(CLI::App& app, Session& session) {
     app.name("petzval");
     app.description("A path tracer whose camera is a lens. Every command has --help.");
     app.option_defaults()->take_last();  // of an option that is given twice
-    app.set_version_flag("--version", program_version() + "\n" + build_description());
+    app.set_version_flag("--version", io::program_version() + "\n" + io::build_description());
     app.require_subcommand(1);
     add_render_command(app, session);
     add_resume_command(app, session);
@@ -36,4 +36,4 @@ void add_all_commands(CLI::App& app, Session& session) {
     app.footer("petzval help COMMAND prints what a command takes.");
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

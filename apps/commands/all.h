@@ -6,9 +6,9 @@
 
 #include "apps/commands/session.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Adds name, version and all commands to an app. The session must outlive it.
 void add_all_commands(CLI::App&, Session&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

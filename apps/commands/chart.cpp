@@ -15,7 +15,7 @@
 #include "apps/request/parse.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Chart options as given; the texts become values in resolve().
@@ -72,12 +72,12 @@ int chart_command(ChartOptions& o, Interrupt& interrupt) {
     resolve(o);
     flush_denormals();
     const int threads = threads_of(o.order.run);
-    TbbExecutor executor(threads);
-    limit_picture_threads(threads);
+    integrator::TbbExecutor executor(threads);
+    io::limit_picture_threads(threads);
     const auto notice = [quiet = o.order.run.quiet](const std::string& text) {
         if (!quiet) print_notice(text);
     };
-    load_image_codec();  // before minutes of work: pictures will be written
+    io::load_image_codec();  // before minutes of work: pictures will be written
     interrupt.arm();
     const auto finished = [&](const MeasuredCase& of) {
         if (o.order.run.quiet) return;
@@ -110,4 +110,4 @@ void add_chart_command(CLI::App& app, Session& session) {
         [options, &session] { session.exit_code = chart_command(*options, session.interrupt); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@ namespace CLI {
 class App;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 struct Session;
 
@@ -14,4 +14,4 @@ struct Session;
 /// ended.
 void add_chart_command(CLI::App&, Session&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

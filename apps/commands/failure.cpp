@@ -10,7 +10,7 @@
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 int tell_failure(Session& session, const std::string& where) {
     const auto fail = [&](int exit_code, const std::string& what) {
@@ -21,9 +21,9 @@ int tell_failure(Session& session, const std::string& where) {
         throw;
     } catch (const CLI::ParseError& e) {
         return fail(kUsage, e.what());
-    } catch (const ArgumentError& e) {
+    } catch (const io::ArgumentError& e) {
         return fail(kUsage, e.what());
-    } catch (const OutputError& e) {
+    } catch (const io::OutputError& e) {
         return fail(kOutputFailed, e.what());
     } catch (const std::bad_alloc& e) {
         const std::string what = e.what();
@@ -39,4 +39,4 @@ int tell_failure(Session& session, const std::string& where) {
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

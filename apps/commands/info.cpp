@@ -13,7 +13,7 @@
 #include "io/base/error.h"
 #include "io/gltf/info.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Number of cameras for which the focus is looked for.
@@ -26,8 +26,8 @@ struct InfoOptions {
 
 // What of a file shows only in its finished scene: where it lies, what cameras would focus on, and
 // what its glass does.
-void append_placement(FileScope scope, InfoReport& report) {
-    GltfFile& file = report.file;
+void append_placement(io::FileScope scope, InfoReport& report) {
+    io::GltfFile& file = report.file;
     Scene& scene = file.scene;
     if (scene.instances.empty()) return;
     flush_denormals();
@@ -35,52 +35,53 @@ void append_placement(FileScope scope, InfoReport& report) {
     report.bounds = scene.bounds;
     const Bvh bvh(scene, Traversal::Robust);
     report.bvh_bytes = bvh.bytes();
-    const auto find = [&](const GltfCamera* camera) {
+    const auto find = [&](const io::GltfCamera* camera) {
         report.focus.push_back(find_auto_focus(camera, report.path.string(), scope, scene, bvh));
     };
     for (size_t i = 0; i < file.cameras.size() && i < kMostCameras; ++i)
         file.cameras[i].orthographic ? void(report.focus.emplace_back()) : find(&file.cameras[i]);
     if (file.cameras.empty()) find(nullptr);
-    for (std::string& remark : glass_remarks(scene, lost_light(scene, bvh)))
+    for (std::string& remark : glass_remarks(scene, integrator::lost_light(scene, bvh)))
         file.warnings.push_back(std::move(remark));
 }
 
 // The extensions of a file that was refused for one of them; none where something else is wrong.
-std::vector<ExtensionInFile> refused_extensions(const std::filesystem::path& scene) {
+std::vector<io::ExtensionInFile> refused_extensions(const std::filesystem::path& scene) {
     try {
-        std::vector<ExtensionInFile> all = read_gltf_extensions(scene);
-        for (const ExtensionInFile& one : all)
+        std::vector<io::ExtensionInFile> all = io::read_gltf_extensions(scene);
+        for (const io::ExtensionInFile& one : all)
             if (one.refused()) return all;
-    } catch (const InputError&) {  // the error of the reading itself is told
+    } catch (const io::InputError&) {  // the error of the reading itself is told
     }
     return {};
 }
 
 void tell_refusal(const InfoOptions& o, const std::string& error) {
-    const std::vector<ExtensionInFile> extensions = refused_extensions(o.order.render.scene.scene);
+    const std::vector<io::ExtensionInFile> extensions =
+        refused_extensions(o.order.render.scene.scene);
     if (o.json) {
         print_refusal_json(o.order.render.scene.scene, error, extensions);
     } else if (!extensions.empty()) {
         fmt::print("extensions\n");
-        for (const std::string& line : table_of(extensions)) print_line("  " + line);
+        for (const std::string& line : io::table_of(extensions)) print_line("  " + line);
     }
 }
 
 void info_command(const InfoOptions& o) {
     check(o.order.render);
     const SceneRequest scene = resolved_scene(o.order.render);
-    PictureBudget pictures = scene.pictures();
-    GltfChoices choices = scene.choices;
+    io::PictureBudget pictures = scene.pictures();
+    io::GltfChoices choices = scene.choices;
     choices.checks_all_animations = true;
     InfoReport report;
     report.path = scene.scene;
     report.variant = choices.variant;
     try {
-        report.file = load_gltf(scene.scene, scene.scope, pictures, choices);
+        report.file = io::load_gltf(scene.scene, scene.scope, pictures, choices);
         check_camera_files(scene.scene, scene.scope, report.file.cameras);
-    } catch (const ArgumentError&) {
+    } catch (const io::ArgumentError&) {
         throw;
-    } catch (const InputError& error) {
+    } catch (const io::InputError& error) {
         tell_refusal(o, error.what());
         throw;
     }
@@ -99,4 +100,4 @@ void add_info_command(CLI::App& app) {
     command->callback([options] { info_command(*options); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,9 +6,9 @@ namespace CLI {
 class App;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Adds the subcommand; its callback prints to stdout what a glTF file holds.
 void add_info_command(CLI::App&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

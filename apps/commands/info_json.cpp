@@ -6,7 +6,7 @@
 #include "apps/request/option_text.h"
 #include "io/gltf/info.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using nlohmann::ordered_json;
@@ -15,38 +15,38 @@ ordered_json head_of(const std::filesystem::path& path) {
     return {{"schema", "petzval.info"}, {"version", 1}, {"file", path.string()}};
 }
 
-ordered_json json_of(const std::vector<ExtensionInFile>& extensions) {
+ordered_json json_of(const std::vector<io::ExtensionInFile>& extensions) {
     ordered_json list = ordered_json::array();
-    for (const ExtensionInFile& one : extensions)
+    for (const io::ExtensionInFile& one : extensions)
         list.push_back({{"name", one.name},
-                        {"use", word_of(one)},
-                        {"changes_picture",
-                         one.use != ExtensionUse::Rendered && one.use != ExtensionUse::Harmless},
+                        {"use", io::word_of(one)},
+                        {"changes_picture", one.use != io::ExtensionUse::Rendered &&
+                                                one.use != io::ExtensionUse::Harmless},
                         {"effect", one.effect},
                         {"objects", one.objects},
                         {"required", one.required}});
     return list;
 }
 
-ordered_json json_of(const std::vector<GltfSummary::Animation>& animations) {
+ordered_json json_of(const std::vector<io::GltfSummary::Animation>& animations) {
     ordered_json list = ordered_json::array();
-    for (const GltfSummary::Animation& one : animations)
+    for (const io::GltfSummary::Animation& one : animations)
         list.push_back({{"name", one.name},
                         {"channels", one.channels},
                         {"duration_s", or_null(one.duration_s)}});
     return list;
 }
 
-ordered_json json_of(const std::vector<GltfSummary::Picture>& pictures) {
+ordered_json json_of(const std::vector<io::GltfSummary::Picture>& pictures) {
     ordered_json list = ordered_json::array();
-    for (const GltfSummary::Picture& one : pictures)
+    for (const io::GltfSummary::Picture& one : pictures)
         list.push_back({{"name", one.name},
                         {"size_px", {one.width_px, one.height_px}},
                         {"memory_bytes", one.bytes}});
     return list;
 }
 
-ordered_json json_of(const GltfSummary::Lights& lights) {
+ordered_json json_of(const io::GltfSummary::Lights& lights) {
     return {{"point", lights.point},
             {"spot", lights.spot},
             {"directional", lights.directional},
@@ -61,7 +61,7 @@ ordered_json json_of(const FoundFocus& focus) {
     return focus.m > 0 ? ordered_json(focus.m) : ordered_json(nullptr);
 }
 
-ordered_json json_of(const GltfCamera& camera) {
+ordered_json json_of(const io::GltfCamera& camera) {
     constexpr double kDegrees_per_rad = 180 / static_cast<double>(kPi);
     ordered_json out{{"name", camera.name},
                      {"type", camera.orthographic ? "orthographic" : "perspective"}};
@@ -109,10 +109,10 @@ void print(const ordered_json& json) {
 }  // namespace
 
 void print_info_json(const InfoReport& report) {
-    const GltfFile& file = report.file;
-    const GltfSummary& holds = file.holds;
+    const io::GltfFile& file = report.file;
+    const io::GltfSummary& holds = file.holds;
     uint64_t picture_bytes = 0;
-    for (const GltfSummary::Picture& one : holds.pictures) picture_bytes += one.bytes;
+    for (const io::GltfSummary::Picture& one : holds.pictures) picture_bytes += one.bytes;
     ordered_json out = head_of(report.path);
     out["error"] = nullptr;
     out["generator"] = holds.generator;
@@ -149,11 +149,11 @@ void print_info_json(const InfoReport& report) {
 }
 
 void print_refusal_json(const std::filesystem::path& path, const std::string& error,
-                        const std::vector<ExtensionInFile>& extensions) {
+                        const std::vector<io::ExtensionInFile>& extensions) {
     ordered_json out = head_of(path);
     out["error"] = error;
     out["extensions"] = json_of(extensions);
     print(out);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

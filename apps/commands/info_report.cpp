@@ -6,7 +6,7 @@
 #include "apps/cli/console.h"
 #include "io/gltf/info.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 void print_list(const char* title, const std::vector<std::string>& lines) {
@@ -29,7 +29,7 @@ std::string focus_line(const std::string& camera, const FoundFocus& found) {
 
 std::string memory_line(const InfoReport& report) {
     uint64_t pictures = 0;
-    for (const GltfSummary::Picture& one : report.file.holds.pictures) pictures += one.bytes;
+    for (const io::GltfSummary::Picture& one : report.file.holds.pictures) pictures += one.bytes;
     const auto mib = [](uint64_t bytes) { return static_cast<double>(bytes) * 0x1p-20; };
     const uint64_t meshes = report.file.holds.mesh_bytes, bvh = report.bvh_bytes;
     return fmt::format("memory: {:.1f} MiB: meshes {:.1f}, images {:.1f}, BVH {:.1f}",
@@ -39,7 +39,7 @@ std::string memory_line(const InfoReport& report) {
 }  // namespace
 
 void print_info(const InfoReport& report) {
-    const GltfFile& file = report.file;
+    const io::GltfFile& file = report.file;
     std::vector<std::string> holds = file.contents;
     holds.push_back(memory_line(report));
     if (report.bounds) holds.push_back(bounds_line(*report.bounds));
@@ -48,11 +48,11 @@ void print_info(const InfoReport& report) {
             holds.push_back(focus_line(file.cameras.empty() ? "" : fmt::format(", camera {}", i),
                                        report.focus[i]));
     print_list("holds", holds);
-    print_list("extensions", table_of(file.holds.extensions));
+    print_list("extensions", io::table_of(file.holds.extensions));
     print_list("honoured", file.honoured);
     print_list("ignored", file.ignored);
     print_list("probably lost by the exporter", file.lost);
     print_list("warnings", file.warnings);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,12 +10,12 @@
 #include "apps/setup/camera/auto_focus.h"
 #include "io/gltf/gltf.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// A file that was read, and what its finished scene shows.
 struct InfoReport {
     std::filesystem::path path;
-    GltfFile file;
+    io::GltfFile file;
     std::optional<std::string> variant;  ///< that is shown, as asked for
     std::optional<Box3f> bounds;         ///< absent: nothing is there
     std::vector<FoundFocus> focus;       ///< of the first cameras; of the framing one without any
@@ -28,6 +28,6 @@ void print_info(const InfoReport&);
 void print_info_json(const InfoReport&);
 /// Prints why a file is refused, and its extensions, as JSON.
 void print_refusal_json(const std::filesystem::path&, const std::string& error,
-                        const std::vector<ExtensionInFile>&);
+                        const std::vector<io::ExtensionInFile>&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 #include "io/base/printable.h"
 #include "io/image/output.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 namespace fs = std::filesystem;
 
@@ -18,15 +18,15 @@ namespace {
 // Refuses to put a checkpoint in the place of what is none.
 void refuse_loss(const fs::path& file) {
     const auto refuse = [&](const char* what) {
-        return ArgumentError(file.string(), "",
-                             "{}, and a checkpoint would take its place; move it, name "
-                             "another by -o NAME.state, or give --checkpoint off",
-                             what);
+        return io::ArgumentError(file.string(), "",
+                                 "{}, and a checkpoint would take its place; move it, name "
+                                 "another by -o NAME.state, or give --checkpoint off",
+                                 what);
     };
-    std::optional<StateHeader> there;
+    std::optional<io::StateHeader> there;
     try {
-        there = StateReader(file).header();
-    } catch (const InputError&) {
+        there = io::StateReader(file).header();
+    } catch (const io::InputError&) {
         throw refuse("is there, and is no state of this program's");
     }
     if (there->is_complete())
@@ -51,8 +51,8 @@ KeptState::KeptState(const RenderOrder& order, RenderFiles files,
         refuse_loss(*files_.state);
 }
 
-void KeptState::set(FilmShape shape, SampleRange samples, RenderFacts facts,
-                    const DisplayOptions& display) {
+void KeptState::set(io::FilmShape shape, SampleRange samples, RenderFacts facts,
+                    const io::DisplayOptions& display) {
     shape_ = std::move(shape);
     samples_ = samples;
     record_.facts = std::move(facts);
@@ -60,7 +60,7 @@ void KeptState::set(FilmShape shape, SampleRange samples, RenderFacts facts,
     if (auto& config = record_.display.config; !config.empty()) config = fs::absolute(config);
 }
 
-std::optional<Film> KeptState::take_up(Compare compare, const Notice& notice) {
+std::optional<Film> KeptState::take_up(Compare compare, const io::Notice& notice) {
     const auto& file = files_.state;
     std::error_code error;
     if (!file || !fs::exists(*file, error)) return std::nullopt;
@@ -69,19 +69,19 @@ std::optional<Film> KeptState::take_up(Compare compare, const Notice& notice) {
             notice(
                 fmt::format("warning: {} is there from a render before, and the first checkpoint "
                             "takes its place; petzval resume {} would go on with that one",
-                            file->string(), for_shell(file->string())));
+                            file->string(), io::for_shell(file->string())));
         return std::nullopt;
     }
     try {
-        StateReader reader(*file);
-        const StateHeader& header = reader.header();
+        io::StateReader reader(*file);
+        const io::StateHeader& header = reader.header();
         const RunRecord before = record_in(header, *file);
         const auto differs = difference({before.facts, header.shape, "the state"},
                                         {record_.facts, shape_, "what it would be now"}, compare);
         if (differs || header.samples != samples_ || header.shape.crop != shape_.crop)
-            throw InputError(file->string(), "",
-                             differs ? "does not go on: something has changed: " + *differs
-                                     : "is of other samples or another crop");
+            throw io::InputError(file->string(), "",
+                                 differs ? "does not go on: something has changed: " + *differs
+                                         : "is of other samples or another crop");
         Film film = shape_.empty_film();
         reader.add_to(film);
         goes_on_ = true;
@@ -89,7 +89,7 @@ std::optional<Film> KeptState::take_up(Compare compare, const Notice& notice) {
         record_.figures = before.figures;
         notice(fmt::format("goes on with {}, which has {}", file->string(), share_text(header)));
         return film;
-    } catch (const InputError& refused) {
+    } catch (const io::InputError& refused) {
         if (resumed_) throw;
         if (!files_.state_stays) refuse_loss(*file);
         notice(fmt::format("warning: {}; it will be replaced", refused.what()));
@@ -101,9 +101,9 @@ void KeptState::write(const fs::path& to, const Film& film, const RunFigures& no
                       SampleRange samples, bool finished) {
     RunRecord record = record_;
     record.figures += now;
-    StateHeader header = header_of(record, shape_, samples);
+    io::StateHeader header = header_of(record, shape_, samples);
     header.is_finished = finished;
-    write_state(to, std::move(header), film);
+    io::write_state(to, std::move(header), film);
     wrote_ = true;
 }
 
@@ -114,7 +114,7 @@ void KeptState::remove_unfinished(const std::vector<fs::path>& pictures) const {
     if (files_.state && !files_.state_stays && (wrote_ || goes_on_) && !of_others)
         fs::remove(*files_.state, error);
     if (!goes_on_) return;
-    for (const fs::path& picture : pictures) fs::remove(partial_name(picture), error);
+    for (const fs::path& picture : pictures) fs::remove(io::partial_name(picture), error);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

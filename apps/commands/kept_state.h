@@ -12,7 +12,7 @@
 #include "core/film/film.h"
 #include "io/base/notice.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// State of one render.
 class KeptState {
@@ -26,13 +26,13 @@ class KeptState {
     [[nodiscard]] const RenderFiles& files() const { return files_; }
 
     /// Sets the shape, samples and facts of the render, once they are known.
-    void set(FilmShape, SampleRange, RenderFacts, const DisplayOptions&);
+    void set(io::FilmShape, SampleRange, RenderFacts, const io::DisplayOptions&);
     [[nodiscard]] const RunRecord& record() const { return record_; }
 
     /// Film with the samples of the state, where there are some to go on from; the figures of the
     /// runs before are those of the record then. Nothing where there are none. Throws InputError
     /// where a resumed state does not fit.
-    [[nodiscard]] std::optional<Film> take_up(Compare, const Notice&);
+    [[nodiscard]] std::optional<Film> take_up(Compare, const io::Notice&);
 
     /// Writes the samples so far, with the figures of this run, to a file. Throws OutputError.
     /// finished: of a render to a noise, that nothing is left to render.
@@ -44,10 +44,10 @@ class KeptState {
   private:
     RenderFiles files_;
     bool resumed_ = false, skips_existing_ = false;
-    FilmShape shape_;
+    io::FilmShape shape_;
     SampleRange samples_;
     RunRecord record_;  ///< figures: of the runs before
     bool goes_on_ = false, was_complete_ = false, wrote_ = false;
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

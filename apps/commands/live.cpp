@@ -18,7 +18,7 @@
 #include "io/file/assets.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Opens an address as the desktop does; without a desktop, or where nobody watches, it does not.
@@ -45,9 +45,9 @@ void serve(const LiveOptions& options, Session& session) {
         throw ValueError("--listen", "needs an address, as 0.0.0.0");
     const auto& scene = options.start.render.scene.scene;
     if (std::error_code none; !std::filesystem::is_regular_file(scene, none))
-        throw InputError(scene.string(), "", "no such file");
-    load_image_codec();
-    RenderMonitor& monitor = session.interrupt.monitor();
+        throw io::InputError(scene.string(), "", "no such file");
+    io::load_image_codec();
+    integrator::RenderMonitor& monitor = session.interrupt.monitor();
     session.interrupt.arm();
     const LiveServer server(options);
     fmt::print("{}\n", server.address());
@@ -84,9 +84,9 @@ void add_live_command(CLI::App& app, Session& session) {
         if (options->learn != file.empty())
             throw ValueError("SCENE", options->learn ? "is none of --learn, which has its own"
                                                      : "is missing: give a .gltf or .glb file");
-        if (options->learn) file = asset("scenes/ornaments.glb");
+        if (options->learn) file = io::asset("scenes/ornaments.glb");
         serve(*options, session);
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -7,9 +7,9 @@ namespace CLI {
 class App;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Adds `petzval live`: a view finder in the browser.
 void add_live_command(CLI::App&, Session&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -12,7 +12,7 @@
 #include "apps/state/merge.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,22 +24,22 @@ struct MergeOptions {
 };
 
 void check_files(const MergeOptions& o) {
-    std::vector<NamedFile> inputs, outputs;
+    std::vector<io::NamedFile> inputs, outputs;
     for (const fs::path& state : o.states) inputs.push_back({"a state to merge", state});
     for (const fs::path& output : o.outputs) outputs.push_back({"-o", output});
     if (o.stats) outputs.push_back({"--stats", *o.stats});
-    refuse_overwriting(outputs, inputs);
-    refuse_overwriting(outputs, own_files());
-    for (const NamedFile& output : outputs) check_writable(output.path);
+    io::refuse_overwriting(outputs, inputs);
+    io::refuse_overwriting(outputs, own_files());
+    for (const io::NamedFile& output : outputs) io::check_writable(output.path);
 }
 
 // Throws where the display's configuration is not what it was.
 void check_display(const RunRecord& record) {
     const auto is_same = [&] { return record.facts.display == display_facts(record.display); };
     if (!record.display.config.empty() && !is_same())
-        throw InputError(record.display.config.string(), "",
-                         "has changed since the states were written; their pictures would look "
-                         "different");
+        throw io::InputError(record.display.config.string(), "",
+                             "has changed since the states were written; their pictures would look "
+                             "different");
 }
 
 int merge(const MergeOptions& o, Session& session) {
@@ -57,23 +57,24 @@ int merge(const MergeOptions& o, Session& session) {
     if (noise) notice(text_of(*noise, merged.record.facts.noise->noise));
     std::shared_ptr<const DenoisedFilm> denoised;
     if (film.keeps().halves) {
-        TbbExecutor executor(threads_of(RunRequest{}));
+        integrator::TbbExecutor executor(threads_of(RunRequest{}));
         session.interrupt.arm();
         denoised = denoised_film(film, executor, session.interrupt.monitor().stop);
         if (!denoised) return kStopped;
         notice(text_of(*denoised));
     }
-    std::vector<WriteOutcome> outcomes = write_pictures(
+    std::vector<io::WriteOutcome> outcomes = write_pictures(
         pictures, merged.record.display,
         {film, merged.samples, merged.record.facts, noise, denoised}, false, session.console);
     for (const fs::path& state : states)
-        outcomes.push_back(write_or_rescue(state, [&](const fs::path& to) {
-            StateHeader header = header_of(merged.record, FilmShape::of(film), merged.samples);
+        outcomes.push_back(io::write_or_rescue(state, [&](const fs::path& to) {
+            io::StateHeader header =
+                header_of(merged.record, io::FilmShape::of(film), merged.samples);
             header.is_finished = true;
-            write_state(to, std::move(header), film);
+            io::write_state(to, std::move(header), film);
         }));
     if (o.stats)
-        outcomes.push_back(write_or_rescue(*o.stats, [&](const fs::path& to) {
+        outcomes.push_back(io::write_or_rescue(*o.stats, [&](const fs::path& to) {
             RunReport report;
             report.outputs = outcomes;
             write_stats(to,
@@ -82,7 +83,7 @@ int merge(const MergeOptions& o, Session& session) {
                         merged.record.figures, report);
         }));
     bool written = true;
-    for (const WriteOutcome& one : outcomes) {
+    for (const io::WriteOutcome& one : outcomes) {
         written = written && one.written();
         const bool told = std::find(pictures.begin(), pictures.end(), one.wanted) != pictures.end();
         if (!one.written() && !told) session.console.error(one.message());
@@ -110,4 +111,4 @@ void add_merge_command(CLI::App& app, Session& session) {
     command->callback([options, &session] { session.exit_code = merge(*options, session); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,9 +8,9 @@ namespace CLI {
 class App;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Declares the command that adds states and writes their picture.
 void add_merge_command(CLI::App&, Session&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

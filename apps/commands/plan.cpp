@@ -18,7 +18,7 @@
 #include "io/base/printable.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 struct PlanOptions {
@@ -37,8 +37,8 @@ std::string command_of(RenderOrder order, const Plan& plan) {
     order.render.tolerance = kUsualTolerance;  // nothing is left to choose
     order.run.quiet = false;
     order.run.outputs = {"out.exr"};
-    for (const NamedFile& input : input_files(plan.scene))
-        if (same_file(input.path, "out.exr")) order.run.outputs = {"picture.exr"};
+    for (const io::NamedFile& input : input_files(plan.scene))
+        if (io::same_file(input.path, "out.exr")) order.run.outputs = {"picture.exr"};
     return render_command(order);
 }
 
@@ -67,7 +67,7 @@ void print(const Plan& plan, const Commands& commands) {
     const std::string rare = rare_text(plan);
     const std::string at_least = rare.empty() ? "" : "at least ";
     fmt::print("{:<11} {}: they bring noise from {} to {}{}\n", "samples", plan.samples,
-               percent(plan.first_noise), at_least, percent(plan.noise));
+               io::percent(plan.first_noise), at_least, io::percent(plan.noise));
     if (const auto times = times_without_targets(plan))
         fmt::print(
             "{:<11} {} {}: without them about {:.2g} times the samples\n", "targets",
@@ -76,7 +76,8 @@ void print(const Plan& plan, const Commands& commands) {
             *times);
     if (!rare.empty()) fmt::print("{:<11} {}\n", "rare light", rare);
     fmt::print("{:<11} {}{}: {} by the model, {}{} by noise\n", "error", at_least,
-               percent(plan.error()), percent(plan.bias), at_least, percent(plan.noise));
+               io::percent(plan.error()), io::percent(plan.bias), at_least,
+               io::percent(plan.noise));
     fmt::print("{:<11} {}: from {} to {} on {} here, {} of CPU time\n", "time",
                duration(plan.wall_s()), duration(Plan::kLeastTime * plan.wall_s()),
                duration(Plan::kMostTime * plan.wall_s()),
@@ -101,8 +102,8 @@ void plan_command(PlanOptions& o) {
     check(order.render);
     const int threads = threads_of(order.run);
     flush_denormals();
-    TbbExecutor executor(threads);
-    limit_picture_threads(threads);
+    integrator::TbbExecutor executor(threads);
+    io::limit_picture_threads(threads);
     const RenderRequest& request = order.render;
     const Plan plan =
         make_plan({resolved_scene(request), job_of(request), request.path, request.tolerance},
@@ -124,4 +125,4 @@ void add_plan_command(CLI::App& app) {
     command->callback([options] { plan_command(*options); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

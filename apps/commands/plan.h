@@ -6,9 +6,9 @@ namespace CLI {
 class App;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Adds the subcommand; its callback prints to stdout how a scene is best rendered.
 void add_plan_command(CLI::App&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,11 +9,11 @@
 #include "apps/commands/render_one.h"
 #include "apps/commands/render_sequence.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 int run_render(const RenderOrder& order, Session& session,
                const std::optional<std::filesystem::path>& resumed_from) {
-    const Notice notice = [&](const std::string& text) { session.console.notice(text); };
+    const io::Notice notice = [&](const std::string& text) { session.console.notice(text); };
     check_sequence(order);
     if (order.run.log) session.console.log_to(*order.run.log);
     if (order.sequence.several()) return render_sequence(order, notice, session);
@@ -36,4 +36,4 @@ void add_render_command(CLI::App& app, Session& session) {
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

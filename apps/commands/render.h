@@ -12,7 +12,7 @@ namespace CLI {
 class App;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Declares the command; its exit code goes to the session, which must outlive the app.
 void add_render_command(CLI::App&, Session&);
@@ -22,4 +22,4 @@ void add_render_command(CLI::App&, Session&);
 [[nodiscard]] int run_render(const RenderOrder&, Session&,
                              const std::optional<std::filesystem::path>& resumed_from = {});
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -14,19 +14,19 @@
 #include "io/image/picture_files.h"
 #include "io/picture/seal.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 namespace fs = std::filesystem;
 
 void check_outputs(RenderOrder& order, const RenderFiles& files) {
     SceneRequest& scene = order.render.scene;
     const RunRequest& run = order.run;
-    std::vector<NamedFile>& outputs = scene.outputs;
+    std::vector<io::NamedFile>& outputs = scene.outputs;
     std::vector<fs::path> partials;
     for (const auto& picture : files.pictures) {
         outputs.push_back({"-o", picture});
-        const auto partial = partial_name(picture);  // which the formats of a name share
-        const auto same = [&](const auto& other) { return same_file(other, partial); };
+        const auto partial = io::partial_name(picture);  // which the formats of a name share
+        const auto same = [&](const auto& other) { return io::same_file(other, partial); };
         if (std::none_of(partials.begin(), partials.end(), same)) partials.push_back(partial);
     }
     if (run.stats) outputs.push_back({"--stats", *run.stats});
@@ -37,16 +37,16 @@ void check_outputs(RenderOrder& order, const RenderFiles& files) {
         outputs.push_back({"the picture of a render that is stopped", partial});
     if (files.state) outputs.push_back({"the state of the render", *files.state});
     const DisplayRequest& asked = order.render.display;
-    refuse_overwriting(outputs, input_files(scene));
-    refuse_overwriting(outputs, input_files(asked));
-    refuse_overwriting(outputs, own_files());
+    io::refuse_overwriting(outputs, input_files(scene));
+    io::refuse_overwriting(outputs, input_files(asked));
+    io::refuse_overwriting(outputs, own_files());
     const Rect crop = pixels_of(order.render.crop, scene.size);
-    const DisplayOptions display{0, asked.view, asked.config};
+    const io::DisplayOptions display{0, asked.view, asked.config};
     for (const auto& picture : files.pictures)
-        check_output(picture, display, crop.width(), crop.height());
-    if (run.preview) check_output(*run.preview, display, crop.width(), crop.height());
-    if (files.state) check_writable(*files.state);
-    if (run.stats) check_writable(*run.stats);
+        io::check_output(picture, display, crop.width(), crop.height());
+    if (run.preview) io::check_output(*run.preview, display, crop.width(), crop.height());
+    if (files.state) io::check_writable(*files.state);
+    if (run.stats) io::check_writable(*run.stats);
 }
 
 std::vector<std::string> settle_display(RenderOrder& order, const RenderFiles& files) {
@@ -69,18 +69,20 @@ std::vector<std::string> settle_display(RenderOrder& order, const RenderFiles& f
     return remarks;
 }
 
-std::vector<WriteOutcome> write_pictures(const std::vector<fs::path>& outputs,
-                                         const DisplayOptions& display, const FinishedFilm& done,
-                                         bool stopped, Console& console) {
-    std::vector<WriteOutcome> outcomes;
+std::vector<io::WriteOutcome> write_pictures(const std::vector<fs::path>& outputs,
+                                             const io::DisplayOptions& display,
+                                             const FinishedFilm& done, bool stopped,
+                                             Console& console) {
+    std::vector<io::WriteOutcome> outcomes;
     if (stopped)
-        outcomes = write_partial(outputs, develop(done.film, done.samples, done.facts.metadata));
+        outcomes =
+            io::write_partial(outputs, develop(done.film, done.samples, done.facts.metadata));
     else
         for (const auto& output : outputs)
-            outcomes.push_back(write_or_rescue(output, [&](const fs::path& to) {
-                write_output(to, picture_for(to, done), display);
+            outcomes.push_back(io::write_or_rescue(output, [&](const fs::path& to) {
+                io::write_output(to, picture_for(to, done), display);
             }));
-    for (const WriteOutcome& one : outcomes) {
+    for (const io::WriteOutcome& one : outcomes) {
         if (!one.written())
             console.error(one.message());
         else if (stopped)
@@ -89,14 +91,14 @@ std::vector<WriteOutcome> write_pictures(const std::vector<fs::path>& outputs,
     return outcomes;
 }
 
-bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const FilmShape& shape,
+bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const io::FilmShape& shape,
                    std::optional<SampleRange> samples) {
     std::error_code error;
     if (!fs::is_regular_file(path, error)) return false;
-    Metadata found;
+    io::Metadata found;
     try {
-        found = read_metadata(path);
-    } catch (const InputError&) {  // no picture, or half of one: it is to be written
+        found = io::read_metadata(path);
+    } catch (const io::InputError&) {  // no picture, or half of one: it is to be written
         return false;
     }
     const auto text = [&](const char* name) {
@@ -112,9 +114,9 @@ bool is_up_to_date(const fs::path& path, const RenderFacts& facts, const FilmSha
                          &taken.end) != 2)
         return false;
     const bool same = text(kLightHash) == light_hash(facts, shape, taken) &&
-                      (picture_format(path) == PictureFormat::Exr ||
+                      (io::picture_format(path) == io::PictureFormat::Exr ||
                        text(kDisplayHash) == display_hash(facts.display));
-    return same && is_as_written(path, text(kSealName));
+    return same && io::is_as_written(path, text(io::kSealName));
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -12,7 +12,7 @@
 #include "io/base/notice.h"
 #include "io/file/rescue.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Refuses files that could not be written, and those that are read. Adds the names to the request,
 /// so that a scene which reads one of them is refused. Throws OutputError and ArgumentError.
@@ -24,13 +24,13 @@ void check_outputs(RenderOrder&, const RenderFiles&);
 
 /// Writes all pictures, whichever of them fail; each failure is told. stopped: unfinished ones,
 /// NAME.partial.exr.
-[[nodiscard]] std::vector<WriteOutcome> write_pictures(const std::vector<std::filesystem::path>&,
-                                                       const DisplayOptions&, const FinishedFilm&,
-                                                       bool stopped, Console&);
+[[nodiscard]] std::vector<io::WriteOutcome> write_pictures(
+    const std::vector<std::filesystem::path>&, const io::DisplayOptions&, const FinishedFilm&,
+    bool stopped, Console&);
 
 /// Whether a picture is there already that was made from the same command and inputs. Without
 /// samples any number of them will do, as where a time limit decides.
-[[nodiscard]] bool is_up_to_date(const std::filesystem::path&, const RenderFacts&, const FilmShape&,
-                                 std::optional<SampleRange>);
+[[nodiscard]] bool is_up_to_date(const std::filesystem::path&, const RenderFacts&,
+                                 const io::FilmShape&, std::optional<SampleRange>);
 
-}  // namespace petzval
+}  // namespace petzval::apps

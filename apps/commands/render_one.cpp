@@ -23,7 +23,7 @@
 #include "io/image/display.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 class OneRender {
   public:
     OneRender(const RenderOrder& order, const std::optional<fs::path>& resumed_from,
-              const Notice& notice, Session& session)
+              const io::Notice& notice, Session& session)
         : order_(order),
           notice_(notice),
           session_(session),
@@ -49,31 +49,32 @@ class OneRender {
   private:
     [[nodiscard]] static RenderFiles checked_files(const RenderOrder&);
     [[nodiscard]] const RenderSetup& setup() const { return render_->setup(); }
-    [[nodiscard]] const DisplayOptions& display() const { return render_->display(); }
+    [[nodiscard]] const io::DisplayOptions& display() const { return render_->display(); }
     [[nodiscard]] const std::vector<fs::path>& pictures() const { return kept_.files().pictures; }
     [[nodiscard]] const std::optional<fs::path>& state() const { return kept_.files().state; }
     [[nodiscard]] bool is_complete(const Film&) const;
     [[nodiscard]] bool is_there(const std::optional<Film>&) const;
-    [[nodiscard]] RenderResult render(Progress&);
-    [[nodiscard]] int write_all(const RenderResult&, Progress&, const SequencePlace&);
-    void write_state(const RenderResult&, const RunFigures&, std::vector<WriteOutcome>&);
+    [[nodiscard]] integrator::RenderResult render(Progress&);
+    [[nodiscard]] int write_all(const integrator::RenderResult&, Progress&, const SequencePlace&);
+    void write_state(const integrator::RenderResult&, const RunFigures&,
+                     std::vector<io::WriteOutcome>&);
     [[nodiscard]] bool write_statistics(RunFigures, SampleRange, const RunReport&);
-    void show(const PictureRows& light, const SequencePlace&) const;
+    void show(const io::PictureRows& light, const SequencePlace&) const;
     void show_existing(const SequencePlace&) const;
     void advise_exposure();
-    [[nodiscard]] RunReport report_of(const Progress&, std::vector<WriteOutcome>,
+    [[nodiscard]] RunReport report_of(const Progress&, std::vector<io::WriteOutcome>,
                                       bool stopped) const;
     [[nodiscard]] FoundChoices found() const;
-    [[nodiscard]] RunFigures figures_now(const PathStats&, int workers) const;
+    [[nodiscard]] RunFigures figures_now(const integrator::PathStats&, int workers) const;
     [[nodiscard]] ProgressGoal goal(std::pair<int, int> part_of) const;
 
     RenderOrder order_;
-    const Notice& notice_;
+    const io::Notice& notice_;
     Session& session_;
-    RenderJob job_;
+    integrator::RenderJob job_;
     KeptState kept_;
     std::vector<std::string> remarks_;
-    FilmShape shape_;
+    io::FilmShape shape_;
     SampleRange samples_;
     RenderSession* render_ = nullptr;
     double render_start_s_ = 0, render_start_cpu_s_ = 0;
@@ -112,26 +113,26 @@ bool OneRender::is_there(const std::optional<Film>& film) const {
     });
 }
 
-RunFigures OneRender::figures_now(const PathStats& stats, int workers) const {
+RunFigures OneRender::figures_now(const integrator::PathStats& stats, int workers) const {
     return {stats,
             setup().from.load_s,
             setup().from.bvh_s,
-            steady_s() - render_start_s_,
-            process_cpu_s() - render_start_cpu_s_,
+            integrator::steady_s() - render_start_s_,
+            io::process_cpu_s() - render_start_cpu_s_,
             render_->threads(),
             workers,
             peak_memory_mib()};
 }
 
-RenderResult OneRender::render(Progress& progress) {
-    RenderMonitor& monitor = session_.interrupt.monitor();
+integrator::RenderResult OneRender::render(Progress& progress) {
+    integrator::RenderMonitor& monitor = session_.interrupt.monitor();
     session_.interrupt.arm();
-    render_start_s_ = steady_s();
-    render_start_cpu_s_ = process_cpu_s();
+    render_start_s_ = integrator::steady_s();
+    render_start_cpu_s_ = io::process_cpu_s();
     const Film& film = render_->film();
     const RunRequest& run = order_.run;
     Keeper keeper({checkpoint_interval_s(run.checkpoint, kept_.files(), shape_.bytes()),
-                   [&](const PathStats& stats) {
+                   [&](const integrator::PathStats& stats) {
                        kept_.write(*state(), film, figures_now(stats, render_->threads()),
                                    samples_);
                    },
@@ -144,8 +145,8 @@ RenderResult OneRender::render(Progress& progress) {
         rendering = false;
         progress.begin(phase);
     };
-    const RenderResult result = render_->render(
-        monitor, {[&](const PathStats& stats) { keeper.at_pause(stats); },
+    const integrator::RenderResult result = render_->render(
+        monitor, {[&](const integrator::PathStats& stats) { keeper.at_pause(stats); },
                   kept_.record().figures.render_wall_s, run.stats.has_value(), next_phase});
     keeper.finish();
     if (rendering) progress.end_rendering(!result.stopped);
@@ -163,7 +164,7 @@ void OneRender::advise_exposure() {
         notice_(*advice);
 }
 
-RunReport OneRender::report_of(const Progress& progress, std::vector<WriteOutcome> outputs,
+RunReport OneRender::report_of(const Progress& progress, std::vector<io::WriteOutcome> outputs,
                                bool stopped) const {
     RunReport report;
     if (stopped) report.stopped_by = session_.interrupt.signal_name();
@@ -178,20 +179,20 @@ RunReport OneRender::report_of(const Progress& progress, std::vector<WriteOutcom
 }
 
 // Writes the state where one is to stay, or the render goes on later.
-void OneRender::write_state(const RenderResult& result, const RunFigures& figures,
-                            std::vector<WriteOutcome>& outcomes) {
+void OneRender::write_state(const integrator::RenderResult& result, const RunFigures& figures,
+                            std::vector<io::WriteOutcome>& outcomes) {
     const auto& state = kept_.files().state;
     if (!state || !(result.stopped || kept_.files().state_stays)) return;
     const bool partial = result.stopped || render_->film().keeps().blocks || job_.denoised_error;
     const SampleRange wanted{samples_.first, partial ? samples_.end : result.end_sample};
-    const WriteOutcome& one =
-        outcomes.emplace_back(write_or_rescue(*state, [&](const fs::path& to) {
+    const io::WriteOutcome& one =
+        outcomes.emplace_back(io::write_or_rescue(*state, [&](const fs::path& to) {
             kept_.write(to, render_->film(), figures, wanted, !result.stopped);
         }));
     if (!one.written()) session_.console.error(one.message());
     const fs::path& there = one.written() ? *state : one.rescue;
     if (result.stopped && !there.empty())
-        notice_(fmt::format("stopped: petzval resume {} goes on", for_shell(there.string())));
+        notice_(fmt::format("stopped: petzval resume {} goes on", io::for_shell(there.string())));
 }
 
 // Writes the statistics of this run and those before it; whether that was possible.
@@ -201,30 +202,31 @@ bool OneRender::write_statistics(RunFigures figures, SampleRange taken, const Ru
         shape_.full_size.x,       shape_.full_size.y,         taken,
         setup().from.exposure_ev, render_->film().left_out(), render_->noise(render_->film()),
         render_->denoised()};
-    const WriteOutcome stats = write_or_rescue(
+    const io::WriteOutcome stats = io::write_or_rescue(
         *order_.run.stats, [&](const fs::path& to) { write_stats(to, picture, figures, report); });
     if (!stats.written()) session_.console.error(stats.message());
     return stats.written();
 }
 
 // Writes the state, then pictures and statistics; the exit code.
-int OneRender::write_all(const RenderResult& result, Progress& progress,
+int OneRender::write_all(const integrator::RenderResult& result, Progress& progress,
                          const SequencePlace& place) {
     const bool stopped = result.stopped;
     progress.begin(Phase::Writing);
     const RunFigures figures = figures_now(result.stats, result.workers);
-    std::vector<WriteOutcome> outcomes;
+    std::vector<io::WriteOutcome> outcomes;
     write_state(result, figures, outcomes);
     const SampleRange taken{samples_.first, result.end_sample};
-    const std::optional<NoiseReport> noise = render_->noise(render_->film());
+    const std::optional<integrator::NoiseReport> noise = render_->noise(render_->film());
     const FinishedFilm done{render_->film(), noise ? samples_ : taken, kept_.record().facts, noise,
                             render_->denoised()};
     if (noise) notice_(text_of(*noise, *order_.render.samples.noise));
     if (const auto& denoised = render_->denoised()) notice_(text_of(*denoised));
-    for (WriteOutcome& one : write_pictures(pictures(), display(), done, stopped, session_.console))
+    for (io::WriteOutcome& one :
+         write_pictures(pictures(), display(), done, stopped, session_.console))
         outcomes.push_back(std::move(one));
     bool written = std::all_of(outcomes.begin(), outcomes.end(),
-                               [](const WriteOutcome& one) { return one.written(); });
+                               [](const io::WriteOutcome& one) { return one.written(); });
     // Else the state is all that is left.
     if (!stopped && written) kept_.remove_unfinished(pictures());
     if (!stopped && place.show) place.show(render_->shown(), display());
@@ -242,17 +244,18 @@ int OneRender::write_all(const RenderResult& result, Progress& progress,
 }
 
 // Shows a picture of light through the view that was asked for.
-void OneRender::show(const PictureRows& light, const SequencePlace& place) const {
-    const DisplayOptions& d = display();
-    place.show(to_display(light, d.exposure_ev, d.view, AlphaUse::Keep, d.config), d);
+void OneRender::show(const io::PictureRows& light, const SequencePlace& place) const {
+    const io::DisplayOptions& d = display();
+    place.show(io::to_display(light, d.exposure_ev, d.view, io::AlphaUse::Keep, d.config), d);
 }
 
 // Shows a picture that is there, as a display or as light.
 void OneRender::show_existing(const SequencePlace& place) const {
     const auto shown = std::ranges::find_if(pictures(), is_for_display);
-    const Picture there = read_picture(shown == pictures().end() ? pictures().front() : *shown);
+    const io::Picture there =
+        io::read_picture(shown == pictures().end() ? pictures().front() : *shown);
     if (there.for_display)
-        place.show(as_display(there), display());
+        place.show(io::as_display(there), display());
     else
         show(there, place);
 }
@@ -298,7 +301,7 @@ int OneRender::run(SequencePlace& place) {
     const uint64_t before = render_->film().taken_count();
     session_.interrupt.monitor().pixel_samples_done = before;
     progress.set_before(before, kept_.record().figures.render_wall_s);
-    const RenderResult result = render(progress);
+    const integrator::RenderResult result = render(progress);
     if (const auto told = left_out_text(render_->film())) notice_(*told);
     return write_all(result, progress, place);
 }
@@ -306,8 +309,8 @@ int OneRender::run(SequencePlace& place) {
 }  // namespace
 
 int render_one(const RenderOrder& order, const std::optional<fs::path>& resumed_from,
-               const Notice& notice, Session& session, SequencePlace& place) {
+               const io::Notice& notice, Session& session, SequencePlace& place) {
     return OneRender(order, resumed_from, notice, session).run(place);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -14,7 +14,7 @@
 #include "apps/request/render_order.h"
 #include "io/base/notice.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Choices that a picture was rendered with, where its order leaves them open: else the view, the
 /// focus and the brightness would jump from picture to picture.
@@ -34,13 +34,13 @@ struct SequencePlace {
     /// Choices that this picture found, for others to use.
     FoundChoices found;
     /// Gets the picture for a display when it is finished, or was there already.
-    std::function<void(const PictureRows&, const DisplayOptions&)> show;
+    std::function<void(const io::PictureRows&, const io::DisplayOptions&)> show;
 };
 
 /// Renders one picture and writes its files. resumed_from: a state whose samples it goes on from.
 /// The exit code. Throws what setting up throws.
 [[nodiscard]] int render_one(const RenderOrder&,
                              const std::optional<std::filesystem::path>& resumed_from,
-                             const Notice& notice, Session&, SequencePlace&);
+                             const io::Notice& notice, Session&, SequencePlace&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -16,7 +16,7 @@
 #include "io/base/error.h"
 #include "io/image/sheet.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Makes what the first picture found hold in the order of all; without the view and the focus where
@@ -35,7 +35,7 @@ void hold(const FoundChoices& found, RenderOrder& all) {
 /// A sequence under way.
 class Sequence {
   public:
-    Sequence(const RenderOrder& order, const Notice& notice, Session& session)
+    Sequence(const RenderOrder& order, const io::Notice& notice, Session& session)
         : all_(order), notice_(notice), session_(session), items_(items_of(order.sequence)) {
         const bool frames = !order.sequence.frames.empty();
         if (frames) place_.frames = RenderSession::Frames::Sequence;
@@ -43,10 +43,10 @@ class Sequence {
         const size_t checked = frames ? 1 : items_.size();
         for (size_t i = 0; i < checked; ++i) check_one(items_[i]);
         if (!order.sequence.sheet) return;
-        SheetOptions options;
+        io::SheetOptions options;
         constexpr size_t kMostInARow = 3;  // so few are to be compared
         if (items_.size() <= kMostInARow) options.columns = static_cast<int>(items_.size());
-        check_sheet(*order.sequence.sheet, options);
+        io::check_sheet(*order.sequence.sheet, options);
         sheet_.emplace(items_.size(), options);
     }
     int run();
@@ -64,11 +64,11 @@ class Sequence {
     [[nodiscard]] int write_sheet() const;
 
     RenderOrder all_;
-    const Notice& notice_;
+    const io::Notice& notice_;
     Session& session_;
     std::vector<SequenceItem> items_;
     SequencePlace place_;
-    std::optional<ContactSheet> sheet_;
+    std::optional<io::ContactSheet> sheet_;
     bool holds_ = false;    ///< what the first picture that was set up found
     bool for_srgb_ = true;  ///< what the sheet shows
     std::set<std::string> said_;
@@ -77,7 +77,7 @@ class Sequence {
 int Sequence::render(size_t i) {
     const SequenceItem& item = items_[i];
     const bool several = items_.size() > 1;
-    const Notice once = [&](const std::string& text) {
+    const io::Notice once = [&](const std::string& text) {
         if (said_.insert(text).second) notice_(text);
     };
     bool shown = false;
@@ -87,7 +87,7 @@ int Sequence::render(size_t i) {
     try {
         place_.part_of = {static_cast<int>(i), static_cast<int>(items_.size())};
         if (sheet_)
-            place_.show = [&](const PictureRows& picture, const DisplayOptions& display) {
+            place_.show = [&](const io::PictureRows& picture, const io::DisplayOptions& display) {
                 sheet_->add(picture, item.label);
                 for_srgb_ = display.config.empty();
                 shown = true;
@@ -103,9 +103,9 @@ int Sequence::render(size_t i) {
 }
 
 int Sequence::write_sheet() const {
-    const WriteOutcome sheet =
-        write_or_rescue(*all_.sequence.sheet,
-                        [&](const std::filesystem::path& to) { sheet_->write(to, for_srgb_); });
+    const io::WriteOutcome sheet =
+        io::write_or_rescue(*all_.sequence.sheet,
+                            [&](const std::filesystem::path& to) { sheet_->write(to, for_srgb_); });
     if (sheet.written()) return kSuccess;
     session_.console.error(sheet.message());
     return kOutputFailed;
@@ -137,8 +137,8 @@ int Sequence::run() {
 
 }  // namespace
 
-int render_sequence(const RenderOrder& order, const Notice& notice, Session& session) {
+int render_sequence(const RenderOrder& order, const io::Notice& notice, Session& session) {
     return Sequence(order, notice, session).run();
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,11 +6,11 @@
 #include "apps/request/render_order.h"
 #include "io/base/notice.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Renders the pictures of a sequence, each as an order of its own would. What the first one finds
 /// by itself (view, focus, exposure) holds for all. One that fails does not end the others; a
 /// signal does. The exit code: that of the first that failed.
-[[nodiscard]] int render_sequence(const RenderOrder&, const Notice&, Session&);
+[[nodiscard]] int render_sequence(const RenderOrder&, const io::Notice&, Session&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -15,7 +15,7 @@
 #include "io/base/error.h"
 #include "io/base/format.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,11 +40,11 @@ RenderOrder order_in(const RunRecord& record, const ResumeOptions& o) {
 }
 
 int resume(const ResumeOptions& o, Session& session) {
-    const StateReader reader(o.state);
+    const io::StateReader reader(o.state);
     reader.check();  // before anything that it says is done
     const RunRecord record = record_in(reader.header(), o.state);
     const auto refuse = [&](const std::string& why) {
-        return InputError(o.state.string(), "", why);
+        return io::InputError(o.state.string(), "", why);
     };
     RenderOrder order;
     try {
@@ -60,7 +60,7 @@ int resume(const ResumeOptions& o, Session& session) {
         if (!before) throw refuse("was rendered without ⟨noise⟩, and cannot take one up");
         if (*noise > *before)
             throw refuse(fmt::format("asks for a noise of {}: a higher one is reached already",
-                                     percent(*before)));
+                                     io::percent(*before)));
         before = noise;
     }
     if (reader.header().is_complete() && !noise) {
@@ -88,13 +88,13 @@ ConsoleWish console_wish_of(const std::vector<std::string>& words) {
     ConsoleWish asked = console_wish(words);
     if (words.size() < 2 || words.front() != "resume") return asked;
     for (size_t i = 1; i < words.size(); ++i) try {
-            const StateReader reader(words[i]);
+            const io::StateReader reader(words[i]);
             const RunRequest before = order_of(record_in(reader.header(), words[i]).fields).run;
             if (!asked.asks_progress && before.progress == ProgressStyle::Json)
                 asked.style = ConsoleStyle::Json;
             asked.quiet = asked.quiet || (before.quiet && !asked.asks_progress);
             return asked;
-        } catch (const InputError&) {  // an option, or what resume() will refuse
+        } catch (const io::InputError&) {  // an option, or what resume() will refuse
         }
     return asked;
 }
@@ -112,4 +112,4 @@ void add_resume_command(CLI::App& app, Session& session) {
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 #include "apps/cli/exit_code.h"
 #include "apps/cli/interrupt.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Console, interrupt and exit code that the program hands to its commands. The exit code is of one
 /// that ends without an exception.
@@ -20,4 +20,4 @@ struct Session {
     Session(ConsoleStyle style, bool quiet) : console(style, quiet) {}
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -13,11 +13,11 @@
 #include "apps/request/value_error.h"
 #include "integrator/path/path_steps.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// By PathStep.
-constexpr std::array<const char*, static_cast<size_t>(PathStep::NotFinite) + 1> kSteps{
+constexpr std::array<const char*, static_cast<size_t>(integrator::PathStep::NotFinite) + 1> kSteps{
     "path {path}, {kind}: from {place} m towards {direction}; weight on the film {lanes}",
     "  passes a hole in {surface}, {number} m on",
     "  passes {surface}, {number} m on: cameras do not see it",
@@ -81,10 +81,11 @@ std::string lobe(const BsdfSample& drawn, bool straight) {
                                                 : "reflected";
     if (drawn.delta) return fmt::format("{} (smooth)", way);
     return fmt::format("{} ({}, {:.4g} /sr)", way,
-                       drawn.pdf < kNarrowPdf ? "diffuse or wide lobe" : "narrow lobe", drawn.pdf);
+                       drawn.pdf < integrator::kNarrowPdf ? "diffuse or wide lobe" : "narrow lobe",
+                       drawn.pdf);
 }
 
-void print_sample(const SampleRecord& sample, const Scene& scene, SampleId id) {
+void print_sample(const integrator::SampleRecord& sample, const Scene& scene, SampleId id) {
     const Bands& bands = sample.bands;
     const auto lanes = [&](f4 v) {
         std::string out;
@@ -105,9 +106,9 @@ void print_sample(const SampleRecord& sample, const Scene& scene, SampleId id) {
                         lens.missed, lens.unreached));
     size_t path = 0;
     for (size_t i = 0; i < sample.events.size(); ++i) {
-        const PathEvent& event = sample.events[i];
+        const integrator::PathEvent& event = sample.events[i];
         const auto& s = event.surface;
-        path += event.step == PathStep::Begins;
+        path += event.step == integrator::PathStep::Begins;
         using namespace fmt::literals;
         print_line(fmt::format(
             fmt::runtime(kSteps[static_cast<size_t>(event.step)]), "path"_a = path,
@@ -117,19 +118,23 @@ void print_sample(const SampleRecord& sample, const Scene& scene, SampleId id) {
                                                          : "camera ray",
             "place"_a = place(s ? s->p : event.ray.origin),
             "direction"_a = place(event.ray.direction),
-            "lanes"_a = lanes(event.step == PathStep::GoesOn ? event.drawn.weight : event.lanes),
+            "lanes"_a = lanes(event.step == integrator::PathStep::GoesOn ? event.drawn.weight
+                                                                         : event.lanes),
             "surface"_a = s ? (s->front ? "front of " : "back of ") +
                                   name(scene, s->hit.instance, s->hit.triangle)
                             : "",
             "medium"_a = event.medium ? " in \"" + event.medium->name + "\"" : "",
-            "light"_a = event.step == PathStep::DrawsLight ? name_of_light(scene, event.light) : "",
+            "light"_a = event.step == integrator::PathStep::DrawsLight
+                            ? name_of_light(scene, event.light)
+                            : "",
             "goal"_a = goal(event.ray), "number"_a = fmt::format("{:.5g}", event.number),
             "lobe"_a = lobe(event.drawn, event.straight)));
-        const bool is_last =
-            i + 1 == sample.events.size() || sample.events[i + 1].step == PathStep::Begins;
-        if (is_last && event.step < PathStep::LeavesScene)
-            print_line(event.step == PathStep::Roulette ? "  ends: by roulette"
-                                                        : "  ends: nothing is left of it");
+        const bool is_last = i + 1 == sample.events.size() ||
+                             sample.events[i + 1].step == integrator::PathStep::Begins;
+        if (is_last && event.step < integrator::PathStep::LeavesScene)
+            print_line(event.step == integrator::PathStep::Roulette
+                           ? "  ends: by roulette"
+                           : "  ends: nothing is left of it");
     }
     const V4f& film = sample.film;
     print_line(sample.left_out ? "the film leaves the sample out: it is not finite, or too large"
@@ -154,4 +159,4 @@ void add_trace_sample_command(CLI::App& app, Session& session) {
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

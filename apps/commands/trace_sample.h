@@ -8,9 +8,9 @@ namespace CLI {
 class App;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Adds the subcommand; its callback prints the paths of one sample to stdout.
 void add_trace_sample_command(CLI::App&, Session&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

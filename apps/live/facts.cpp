@@ -8,7 +8,7 @@
 #include "io/image/display.h"
 #include "io/lens/lens_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Json = nlohmann::json;
@@ -23,7 +23,7 @@ const char* kind_of(const RequestField& field) {
 
 Json lens_facts() {
     Json out = Json::array();
-    for (const LensSummary& lens : list_lenses())
+    for (const io::LensSummary& lens : io::list_lenses())
         out.push_back({{"name", lens.name},
                        {"title", lens.title},
                        {"patent", lens.patent},
@@ -62,15 +62,15 @@ Json program_facts(const PageRules& rules) {
             {"start", fields_for_page(rules.start)},
             {"fields", std::move(fields)},
             {"lenses", lens_facts()},
-            {"views", display_views(rules.start.render.display.config)}};
+            {"views", io::display_views(rules.start.render.display.config)}};
 }
 
 Json scene_facts(const LoadedScene& loaded) {
     if (!loaded.prepared.scene) return nullptr;
     Json cameras = Json::array(), animations = Json::array();
-    for (const GltfCamera& camera : *loaded.prepared.cameras) cameras.push_back(camera.name);
-    const GltfSummary& holds = *loaded.prepared.holds;
-    for (const GltfSummary::Animation& one : holds.animations)
+    for (const io::GltfCamera& camera : *loaded.prepared.cameras) cameras.push_back(camera.name);
+    const io::GltfSummary& holds = *loaded.prepared.holds;
+    for (const io::GltfSummary::Animation& one : holds.animations)
         animations.push_back(
             {{"name", one.name}, {"duration_s", number_or_null(one.duration_s.value_or(NAN))}});
     return {{"cameras", std::move(cameras)},
@@ -100,4 +100,4 @@ std::string text_of(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

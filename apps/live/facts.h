@@ -8,7 +8,7 @@
 #include "apps/live/page_request.h"
 #include "apps/live/viewer.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// {"scene": name of the file, "start": fields that the page begins with, "fields": those that a
 /// page may set, "lenses": those that ship, "views": of the display}.
@@ -26,4 +26,4 @@ namespace petzval {
 /// Text of JSON; bytes that are no UTF-8 become U+FFFD.
 [[nodiscard]] std::string text_of(const nlohmann::json&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-namespace petzval {
+namespace petzval::apps {
 
 std::string path_behind_token(const std::string& path, const ServerGate& gate) {
     if (gate.token.empty()) return path;
@@ -42,4 +42,4 @@ std::string random_token() {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// What a browser says of a request.
 struct RequestHead {
@@ -34,4 +34,4 @@ struct ServerGate {
 /// Token of 128 random bits, as 32 digits.
 [[nodiscard]] std::string random_token();
 
-}  // namespace petzval
+}  // namespace petzval::apps

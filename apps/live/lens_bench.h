@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace petzval {
+namespace petzval::apps {
 
 struct BenchRequest {
     std::string lens;      ///< text of a lens file in our JSON
@@ -19,4 +19,4 @@ struct BenchRequest {
 /// the lens is not as it must be or passes no light there.
 [[nodiscard]] nlohmann::json bench_facts(const BenchRequest&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -11,7 +11,7 @@
 #include "camera/lens/focus.h"
 #include "io/aperture/aperture_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Json = nlohmann::json;
@@ -39,13 +39,13 @@ std::string metres(double mm) {
 struct ThinBlur {
     double iris_mm, focal_mm, focus_mm, film_mm;  ///< A, f, S, S'
 
-    explicit ThinBlur(const LensBench& bench)
-        : ThinBlur(first_order(*bench.lens, kLineD_nm), bench.distance_mm) {}
-    ThinBlur(const FirstOrder& lens, double focus)
+    explicit ThinBlur(const camera::LensBench& bench)
+        : ThinBlur(camera::first_order(*bench.lens, kLineD_nm), bench.distance_mm) {}
+    ThinBlur(const camera::FirstOrder& lens, double focus)
         : iris_mm(lens.entrance_pupil_diameter_mm),
           focal_mm(lens.focal_length_mm),
           focus_mm(focus),
-          film_mm(image_distance_mm(focal_mm, focus)) {}
+          film_mm(camera::image_distance_mm(focal_mm, focus)) {}
     [[nodiscard]] double at(double distance_mm) const {
         return iris_mm * film_mm * std::fabs(1 / focus_mm - 1 / distance_mm);
     }
@@ -56,10 +56,11 @@ struct ThinBlur {
     }
 };
 
-double traced_blur_mm(const LessonSetting& set, const LensBench& bench, double distance_mm) {
+double traced_blur_mm(const LessonSetting& set, const camera::LensBench& bench,
+                      double distance_mm) {
     double most = 0;
-    for (const FanPoint& ray :
-         ray_fan(*bench.lens, set.rays(bench, 0, distance_mm), Section::Y, bench.film_mm, {0, 0}))
+    for (const camera::FanPoint& ray : camera::ray_fan(*bench.lens, set.rays(bench, 0, distance_mm),
+                                                       camera::Section::Y, bench.film_mm, {0, 0}))
         most = std::max(most, std::fabs(ray.from_mm[1]));
     return 2 * most;
 }
@@ -67,20 +68,20 @@ double traced_blur_mm(const LessonSetting& set, const LensBench& bench, double d
 }  // namespace
 
 LessonJson confusion_lesson(const LessonSetting& set) {
-    const LensBench bench = set.bench();
+    const camera::LensBench bench = set.bench();
     const ThinBlur thin(bench);
     constexpr int kRays = 7;
     constexpr double kAround_mm = 4, kAcross_mm = 1.5, kLead_mm = 10;
     LessonPlots out;
     Json glass = Json::array(), whole = Json::array(), close = Json::array();
     for (int i = 0; i < bench.lens->size(); ++i)
-        glass.push_back(element_outline(*bench.lens, i, Section::Y));
+        glass.push_back(camera::element_outline(*bench.lens, i, camera::Section::Y));
     whole.push_back(series("", "glass", glass));
     for (const Thing& thing : kThings) {
-        const AimedBundle bundle = set.rays(bench, 0, thing.mm);
+        const camera::AimedBundle bundle = set.rays(bench, 0, thing.mm);
         Json paths = Json::array();
-        for (const PupilPoint& point : section_points(bundle, kRays))
-            paths.push_back(ray_path(*bench.lens, bundle, point, bench.film_mm, kLead_mm));
+        for (const camera::PupilPoint& point : camera::section_points(bundle, kRays))
+            paths.push_back(camera::ray_path(*bench.lens, bundle, point, bench.film_mm, kLead_mm));
         whole.push_back(series(thing.name, thing.style, paths));
         close.push_back(
             series(thing.name, thing.style, rays_about_film(bench, bundle, kRays, kAround_mm)));
@@ -99,7 +100,7 @@ LessonJson confusion_lesson(const LessonSetting& set) {
 }
 
 LessonJson depth_lesson(const LessonSetting& set) {
-    const LensBench bench = set.bench();
+    const camera::LensBench bench = set.bench();
     const ThinBlur thin(bench);
     constexpr double kFirst_mm = 500, kLast_mm = 4000, kHigh_mm = 0.3;
     std::vector<double> far_mm(120);
@@ -127,30 +128,30 @@ LessonJson depth_lesson(const LessonSetting& set) {
 }
 
 LessonJson bokeh_lesson(const LessonSetting& set) {
-    const LensBench bench = set.bench(false);
+    const camera::LensBench bench = set.bench(false);
     const double lamp_mm = kThings[2].mm;
-    const auto radius_mm = stop_radius_for(*bench.lens, set.fstop());
+    const auto radius_mm = camera::stop_radius_for(*bench.lens, set.fstop());
     if (!radius_mm) throw set.refusal("does not open that wide");
     const double rim_mm =
         bench.lens->prescription().surfaces[size_t(bench.lens->stop())].semi_diameter_mm;
-    const Iris iris(parse_aperture(set.asked().aperture.value_or("circle")),
-                    std::min(*radius_mm, rim_mm), set.asked().aperture_scale, {}, rim_mm);
+    const camera::Iris iris(io::parse_aperture(set.asked().aperture.value_or("circle")),
+                            std::min(*radius_mm, rim_mm), set.asked().aperture_scale, {}, rim_mm);
     LessonPlots out;
     constexpr int kSide = 64;
     constexpr double kEdge_mm = 18;  // half of a width of 36 mm
     std::vector<Json> all;
     double reach_mm = 0, middle_mm2 = 0;
     for (const double height_mm : {0., kEdge_mm}) {
-        const AimedBundle bundle = set.rays(bench, height_mm, lamp_mm);
-        std::vector<BundleRay> light;
-        for (const BundleRay& ray : bundle.trace(bundle.grid(kSide), bench.film_mm))
+        const camera::AimedBundle bundle = set.rays(bench, height_mm, lamp_mm);
+        std::vector<camera::BundleRay> light;
+        for (const camera::BundleRay& ray : bundle.trace(bundle.grid(kSide), bench.film_mm))
             if (iris.transmits({float(ray.stop_mm[0]), float(ray.stop_mm[1])}) > 0)
                 light.push_back(ray);
         if (light.empty()) throw set.refusal("lets no light through there");
-        const auto centre = spot_size(light).centroid_mm;
+        const auto centre = camera::spot_size(light).centroid_mm;
         Json points = Json::array();
         // The picture stands upright, the film's image on its head.
-        for (const BundleRay& ray : light) {
+        for (const camera::BundleRay& ray : light) {
             points.push_back(
                 {rounded(centre[0] - ray.film_mm[0]), rounded(centre[1] - ray.film_mm[1])});
             for (size_t k = 0; k < 2; ++k)
@@ -177,16 +178,17 @@ LessonJson bokeh_lesson(const LessonSetting& set) {
 // Half widths of third order on a film in the paraxial focus: dW/drho times 2 N of Welford's
 // wavefront (1986, 8.1).
 LessonJson edge_lesson(const LessonSetting& set) {
-    const LensBench bench = set.bench();
+    const camera::LensBench bench = set.bench();
     const double edge_mm = std::min(bench.lens->prescription().image_circle_mm / 2, 20.);
-    const FirstOrder paraxial = first_order(*bench.lens, kLineD_nm);
+    const camera::FirstOrder paraxial = camera::first_order(*bench.lens, kLineD_nm);
     const std::array<const char*, 3> names{"spherical", "coma", "astigmatism and curvature"},
         styles{"near", "traced", "far"};
     std::array<Json, 3> curves;
     double most_um = 1;
     for (int i = 0; i <= 20; ++i) {
         const double y_mm = edge_mm * i / 20;
-        const SeidelSums s = seidel(*bench.lens, y_mm / paraxial.focal_length_mm).total;
+        const camera::SeidelSums s =
+            camera::seidel(*bench.lens, y_mm / paraxial.focal_length_mm).total;
         const std::array<double, 3> sums{s[0], 3 * s[1], 3 * s[2] + s[3]};
         for (size_t k = 0; k < 3; ++k) {
             curves[k].push_back({y_mm, kUm_per_mm * std::fabs(sums[k]) * paraxial.fnumber});
@@ -199,13 +201,13 @@ LessonJson edge_lesson(const LessonSetting& set) {
     out.add("Third order, a distant point", {0, edge_mm, "mm from the axis"},
             {0, 1.1 * most_um, "µm"}, all);
     for (const double share : {0., 1.}) {
-        const AimedBundle bundle = set.rays(bench, share * edge_mm, bench.distance_mm);
-        const std::vector<BundleRay> spot = bundle.trace(bundle.grid(40), bench.film_mm);
+        const camera::AimedBundle bundle = set.rays(bench, share * edge_mm, bench.distance_mm);
+        const std::vector<camera::BundleRay> spot = bundle.trace(bundle.grid(40), bench.film_mm);
         if (spot.empty()) throw set.refusal("lets no light through there");
-        const auto [centre, rms_mm] = spot_size(spot);
+        const auto [centre, rms_mm] = camera::spot_size(spot);
         Json points = Json::array();
         double reach_um = 0.1;
-        for (const BundleRay& ray : spot) {
+        for (const camera::BundleRay& ray : spot) {
             const double x = kUm_per_mm * (ray.film_mm[0] - centre[0]),
                          y = kUm_per_mm * (ray.film_mm[1] - centre[1]);
             points.push_back({rounded(x), rounded(y)});
@@ -220,4 +222,4 @@ LessonJson edge_lesson(const LessonSetting& set) {
     return out.json();
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -12,7 +12,7 @@
 #include "camera/setup/lens_bench.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 inline constexpr double kUm_per_mm = 1000;
 
@@ -71,24 +71,24 @@ class LessonSetting {
     [[nodiscard]] const CameraRequest& asked() const { return model_.asked; }
     [[nodiscard]] double focus_mm() const;
     [[nodiscard]] double fstop() const;
-    [[nodiscard]] ArgumentError refusal(const std::string& why) const;
+    [[nodiscard]] io::ArgumentError refusal(const std::string& why) const;
 
     /// The traced lens, in focus. stopped: with a round iris of the f-number, else wide open.
-    [[nodiscard]] LensBench bench(bool stopped = true) const;
-    [[nodiscard]] LensBench in_focus(const Lens&) const;
+    [[nodiscard]] camera::LensBench bench(bool stopped = true) const;
+    [[nodiscard]] camera::LensBench in_focus(const camera::Lens&) const;
     /// Rays from a distance that land so far from the middle of the film, towards +x; from the axis
     /// in the section of y.
-    [[nodiscard]] AimedBundle rays(const LensBench&, double height_mm, double distance_mm,
-                                   double nm = kLineD_nm) const;
-    [[nodiscard]] Singlet singlet() const;
+    [[nodiscard]] camera::AimedBundle rays(const camera::LensBench&, double height_mm,
+                                           double distance_mm, double nm = kLineD_nm) const;
+    [[nodiscard]] camera::Singlet singlet() const;
 
   private:
     CameraModel model_;
 };
 
 /// Rays of a bundle about the film, for a series: [mm behind it, height].
-[[nodiscard]] LessonJson rays_about_film(const LensBench&, const AimedBundle&, int count,
-                                         double behind_mm);
+[[nodiscard]] LessonJson rays_about_film(const camera::LensBench&, const camera::AimedBundle&,
+                                         int count, double behind_mm);
 
 /// Circle of confusion, depth of field, shaped bokeh, aberrations over the field: of a traced lens.
 [[nodiscard]] LessonJson confusion_lesson(const LessonSetting&);
@@ -102,4 +102,4 @@ class LessonSetting {
 [[nodiscard]] LessonJson plane_lesson(const LessonSetting&);
 [[nodiscard]] LessonJson triangle_lesson(const LessonSetting&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -12,20 +12,20 @@
 #include "camera/models/thin_lens.h"
 #include "core/sampling/warp.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 LessonJson triangle_lesson(const LessonSetting&) {
     constexpr int kPoints = 10000;
     constexpr uint32_t kSeed = 1;
     std::mt19937 random(kSeed);
     std::uniform_real_distribution<float> uniform(0, 1);
-    const std::vector<V2d> corner = regular_polygon(kMinBlades).contours[0];
+    const std::vector<camera::V2d> corner = camera::regular_polygon(camera::kMinBlades).contours[0];
     LessonPlots out;
     LessonJson wrong = LessonJson::array(), right = LessonJson::array();
     std::array<int, 2> near_corner{};
     const auto add = [&](LessonJson& points, V2f weights, int& near) {
         const double b = double(weights.x), c = double(weights.y);
-        const V2d p = (1 - b - c) * corner[0] + b * corner[1] + c * corner[2];
+        const camera::V2d p = (1 - b - c) * corner[0] + b * corner[1] + c * corner[2];
         points.push_back({rounded(p.x), rounded(p.y)});
         near += b + c < 0.5;
     };
@@ -50,19 +50,19 @@ LessonJson plane_lesson(const LessonSetting& set) {
     if (!std::isfinite(focus_m)) throw ValueError("⟨focus⟩", "must be finite here");
     const float half_rad = set.asked().fov_deg.value_or(40.f) * kPi / 360;
     constexpr float kAspect = 1.5f, kStop_mm = 5;
-    const ThinLensCamera camera({.to_world = M44f(),
-                                 .yfov_rad = 2 * half_rad,
-                                 .aspect = kAspect,
-                                 .iris = Iris(Disk{}, kStop_mm),
-                                 .focus_m = float(focus_m)});
+    const camera::ThinLensCamera camera({.to_world = M44f(),
+                                         .yfov_rad = 2 * half_rad,
+                                         .aspect = kAspect,
+                                         .iris = camera::Iris(camera::Disk{}, kStop_mm),
+                                         .focus_m = float(focus_m)});
     LessonJson sharp = LessonJson::array(), sphere = LessonJson::array();
     double widest_rad = 0;
     for (int i = 0; i <= 12; ++i) {
-        FilmPoint at;
+        camera::FilmPoint at;
         at.film = {float(i) / 12 * 0.999f, 0.5f};
         std::array<Ray, 2> rays;
         for (size_t k = 0; k < 2; ++k) {
-            const CameraSample one =
+            const camera::CameraSample one =
                 camera.through(at, {k == 0 ? -kStop_mm : kStop_mm, 0}, Bands::rgb());
             if (one.empty()) throw set.refusal("lets no light through");
             rays[k] = one[0].ray;
@@ -107,4 +107,4 @@ nlohmann::json lesson_facts(const std::string& lesson, const RenderOrder& order)
     return found->second(set);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 
 #include "apps/request/render_order.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// {"plots": [{"title", "x" and "y": [from, to, what], "series": [{"name", "style", "paths"}]}],
 /// "figures": [name, text]} of a lesson for the lens, iris and focus of an order. style: a class of
@@ -16,4 +16,4 @@ namespace petzval {
 /// not, InputError where the lens is none for it or images nothing.
 [[nodiscard]] nlohmann::json lesson_facts(const std::string& lesson, const RenderOrder&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -28,7 +28,7 @@
 #include "io/lens/lens_drawing.h"
 #include "io/lens/lens_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using httplib::Request, httplib::Response;
@@ -81,8 +81,8 @@ std::string name_in_address(const std::string& host) {
     return host.find(':') == std::string::npos ? host : "[" + host + "]";
 }
 
-std::vector<float> channel_of(const PictureRows& light, const std::string& name) {
-    const int channel = channel_index(light.layout, name);
+std::vector<float> channel_of(const io::PictureRows& light, const std::string& name) {
+    const int channel = io::channel_index(light.layout, name);
     if (channel < 0) throw ValueError("channel", "is none of this picture");
     const size_t width = size_t(light.layout.width), count = light.layout.channels.size();
     std::vector<float> row(width * count), out;
@@ -305,7 +305,7 @@ class LiveServer::Site {
         const uint64_t x = number_of(request, "x"), y = number_of(request, "y");
         viewer_of(request)->inspect(
             number_of(request, "version"), [&](const RenderSession& session) {
-                const PictureRows light = session.light();
+                const io::PictureRows light = session.light();
                 if (x >= uint64_t(light.layout.width) || y >= uint64_t(light.layout.height))
                     throw ValueError("x,y", "lies outside of the picture");
                 const std::vector<std::string>& channels = light.layout.channels;
@@ -332,24 +332,25 @@ class LiveServer::Site {
     }
 
     void send_lens(const Request& request, Response& response) {
-        response.set_content(text_of_shipped(request.get_param_value("name")), "application/json");
+        response.set_content(io::text_of_shipped(request.get_param_value("name")),
+                             "application/json");
     }
 
     void take_lens(const Request& request, Response& response) {
         const Json asked = Json::parse(request.body);
         const std::string text = asked.at("lens");
-        (void)parse_lens(text, "lens");
+        (void)io::parse_lens(text, "lens");
         answer(response, {{"lens", pages_.keep_lens(asked.at("page"), text).string()}});
     }
 
     void draw_lens(const Request& request, Response& response) {
         const std::string name = request.get_param_value("name");
-        const Lens lens(parse_lens(text_of_shipped(name), name).lens);
-        const LensDrawing drawing{.film_mm = lens.film_mm(),
-                                  .film_radius_mm = lens.prescription().image_circle_mm / 2,
-                                  .rays = {},
-                                  .caption = ""};
-        response.set_content(lens_svg(lens, drawing), "image/svg+xml");
+        const camera::Lens lens(io::parse_lens(io::text_of_shipped(name), name).lens);
+        const io::LensDrawing drawing{.film_mm = lens.film_mm(),
+                                      .film_radius_mm = lens.prescription().image_circle_mm / 2,
+                                      .rays = {},
+                                      .caption = ""};
+        response.set_content(io::lens_svg(lens, drawing), "image/svg+xml");
     }
 
     LiveOptions options_;
@@ -368,4 +369,4 @@ LiveServer::LiveServer(LiveOptions options) : site_(std::make_unique<Site>(std::
 
 LiveServer::~LiveServer() = default;
 
-}  // namespace petzval
+}  // namespace petzval::apps

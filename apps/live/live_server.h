@@ -9,7 +9,7 @@
 
 #include "apps/request/render_order.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 struct LiveOptions {
     RenderOrder start;  ///< what a page begins with
@@ -41,4 +41,4 @@ class LiveServer {
     std::unique_ptr<Site> site_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

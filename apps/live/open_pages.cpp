@@ -9,7 +9,7 @@
 #include "apps/request/value_error.h"
 #include "io/file/atomic_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 OpenPages::Page& OpenPages::page_of(const std::string& page) {
     const auto found = pages_.find(page);
@@ -71,8 +71,8 @@ std::filesystem::path OpenPages::keep_lens(const std::string& page, const std::s
         number = ++lenses_;
     }
     const auto file = folder->path() / fmt::format("lens-{}.json", number);
-    write_file_atomically(file, text);
+    io::write_file_atomically(file, text);
     return file;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

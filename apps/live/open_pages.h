@@ -12,7 +12,7 @@
 #include "apps/live/saved_file.h"
 #include "apps/live/viewer.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Pages that may be open at once: a browser keeps six connections to a server, of which each page
 /// takes one. They share the scene; each has a picture of its own.
@@ -55,4 +55,4 @@ class OpenPages {
     SharedScene scene_;  ///< for the page that opens next
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 #include "io/file/assets.h"
 #include "io/file/read_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 std::map<std::string, PageFile> read_page_files() {
     constexpr std::array<std::array<const char*, 2>, 4> kTypes{
@@ -17,15 +17,16 @@ std::map<std::string, PageFile> read_page_files() {
          {".css", "text/css; charset=utf-8"},
          {".svg", "image/svg+xml"}}};
     std::map<std::string, PageFile> out;
-    for (const auto& entry : std::filesystem::directory_iterator(asset("live")))
+    for (const auto& entry : std::filesystem::directory_iterator(io::asset("live")))
         for (const auto& [ending, type] : kTypes)
             if (entry.path().extension() == ending) {
-                const FileBytes file = read_file(entry.path());
-                if (!file.error.empty()) throw InputError(entry.path().string(), "", file.error);
+                const io::FileBytes file = io::read_file(entry.path());
+                if (!file.error.empty())
+                    throw io::InputError(entry.path().string(), "", file.error);
                 out[entry.path().filename().string()] = {
                     type, std::string(file.bytes.begin(), file.bytes.end())};
             }
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

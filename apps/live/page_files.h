@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-namespace petzval {
+namespace petzval::apps {
 
 struct PageFile {
     std::string type, bytes;  ///< type: of media, as HTTP names it
@@ -15,4 +15,4 @@ struct PageFile {
 /// missing.
 [[nodiscard]] std::map<std::string, PageFile> read_page_files();
 
-}  // namespace petzval
+}  // namespace petzval::apps

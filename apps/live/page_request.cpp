@@ -9,7 +9,7 @@
 #include "io/file/assets.h"
 #include "io/file/read_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 std::vector<fs::path> files_of(const RenderOrder& order) {
     std::vector<fs::path> files;
     std::error_code none;
-    for (const NamedFile& file : input_files(order.render.scene))
+    for (const io::NamedFile& file : input_files(order.render.scene))
         if (fs::exists(file.path, none)) files.push_back(file.path);
     for (const fs::path& file :
          {fs::path(order.render.moment.shutter_curve), order.render.display.config})
@@ -28,8 +28,8 @@ std::vector<fs::path> files_of(const RenderOrder& order) {
 void check_files(const RenderOrder& order, const PageRules& rules) {
     const std::vector<fs::path> known = files_of(rules.start);
     for (const fs::path& file : files_of(order)) {
-        const auto in = [&](const fs::path& folder) { return lies_within(file, folder); };
-        const auto same = [&](const fs::path& one) { return same_file(one, file); };
+        const auto in = [&](const fs::path& folder) { return io::lies_within(file, folder); };
+        const auto same = [&](const fs::path& one) { return io::same_file(one, file); };
         if (std::ranges::none_of(rules.folders, in) && std::ranges::none_of(known, same))
             throw ValueError(file.string(),
                              "lies outside the folder of the scene; a page may name the files "
@@ -48,8 +48,8 @@ PageRules rules_of(RenderOrder start) {
     const fs::path folder = start.render.scene.scene.parent_path();
     PageRules rules{std::move(start), {folder.empty() ? fs::path(".") : folder}};
     for (const char* own : {"glass", "lenses", "spectra"}) try {
-            rules.folders.push_back(asset(own));
-        } catch (const InputError&) {  // not installed: whoever needs it will say so
+            rules.folders.push_back(io::asset(own));
+        } catch (const io::InputError&) {  // not installed: whoever needs it will say so
         }
     return rules;
 }
@@ -81,4 +81,4 @@ RenderOrder order_of_page(const nlohmann::json& fields, const PageRules& rules) 
     return order;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

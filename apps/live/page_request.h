@@ -8,7 +8,7 @@
 
 #include "apps/request/fields.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Whether a page may set a field: those that change pixels, but for the scene.
 [[nodiscard]] bool is_for_pages(const RequestField&);
@@ -31,4 +31,4 @@ struct PageRules {
 /// file that the rules leave out.
 [[nodiscard]] RenderOrder order_of_page(const nlohmann::json& fields, const PageRules&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

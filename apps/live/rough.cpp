@@ -6,7 +6,7 @@
 
 #include "apps/request/fields.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 RenderRequest rough_of(RenderRequest request, int divisor) {
     SceneRequest& scene = request.scene;
@@ -20,7 +20,7 @@ RenderRequest rough_of(RenderRequest request, int divisor) {
     scene.targets = TargetUse::Off;
     // A tree has no pilot; whoever asks for another way gets it in the true picture.
     scene.light_choice = LightChoiceKind::Tree;
-    if (!scene.camera.dispersion) scene.camera.dispersion = DispersionMode::Shared;
+    if (!scene.camera.dispersion) scene.camera.dispersion = camera::DispersionMode::Shared;
     if (scene.spectral.mode == SpectralMode::Auto) scene.spectral.mode = SpectralMode::Rgb;
     scene.spectral.bins.reset();
     request.crop.reset();
@@ -56,4 +56,4 @@ int rough_divisor(V2i size_px, double samples_per_s, double set_up_s) {
     return static_cast<int>(std::clamp(std::ceil(std::sqrt(pixels / most)), 1., 1e5));
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,7 +4,7 @@
 
 #include "apps/request/render_request.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Request for a rough picture: a sample of every divisor-th pixel each way, without anything that
 /// is learned or chosen before the first sample. divisor: 1 or more.
@@ -23,4 +23,4 @@ inline constexpr double kRough_s = 0.11;
 /// Least time for its samples: with fewer nothing would be seen.
 inline constexpr double kLeastSampling_s = 0.03;
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -7,7 +7,7 @@
 #include "io/base/error.h"
 #include "io/file/read_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 namespace fs = std::filesystem;
 
@@ -15,8 +15,8 @@ OwnFolder::OwnFolder() {
     std::error_code none;
     std::string pattern = (fs::temp_directory_path(none) / "petzval-XXXXXX").string();
     if (none || !mkdtemp(pattern.data()))
-        throw OutputError("the folder of temporary files", "",
-                          "has no room; set TMPDIR to one that has, and start again");
+        throw io::OutputError("the folder of temporary files", "",
+                              "has no room; set TMPDIR to one that has, and start again");
     path_ = pattern;
 }
 
@@ -32,9 +32,9 @@ std::string saved_file(const std::string& name, const std::function<void(const f
         throw ValueError("name", "is no name of a picture: it ends in .exr, .png or .jpg");
     const OwnFolder folder;
     write(folder.path() / file);
-    const FileBytes bytes = read_file(folder.path() / file);
-    if (!bytes.error.empty()) throw InputError(name, "", bytes.error);
+    const io::FileBytes bytes = io::read_file(folder.path() / file);
+    if (!bytes.error.empty()) throw io::InputError(name, "", bytes.error);
     return {bytes.bytes.begin(), bytes.bytes.end()};
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

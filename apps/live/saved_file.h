@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// A new folder below that of temporary files, gone with what is in it when this goes. Throws
 /// OutputError where there can be none.
@@ -28,4 +28,4 @@ class OwnFolder {
 [[nodiscard]] std::string saved_file(
     const std::string& name, const std::function<void(const std::filesystem::path&)>& write);
 
-}  // namespace petzval
+}  // namespace petzval::apps

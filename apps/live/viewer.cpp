@@ -17,18 +17,18 @@
 #include "io/base/error.h"
 #include "io/image/display.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// A newer request came.
 struct Outdated {};
 
-ArgumentError other_picture() {
+io::ArgumentError other_picture() {
     return {"picture", "", "is another one by now"};
 }
 
 // 8 bits as PNG files have them.
-LivePicture picture_of(const PictureRows& shown) {
+LivePicture picture_of(const io::PictureRows& shown) {
     LivePicture out{{shown.layout.width, shown.layout.height}, {}};
     const size_t row_size = size_t(out.size_px.x) * 4;
     out.rgba.resize(row_size * size_t(out.size_px.y));
@@ -51,8 +51,8 @@ LiveCamera camera_of(const RenderSetup& setup) {
             camera.focus_m,
             camera.sensor_mm,
             camera.yfov_deg,
-            depth_under(*prepared.scene, *prepared.bvh, *setup.view.finder, camera.eye, axis,
-                        {0.5f, 0.5f})};
+            integrator::depth_under(*prepared.scene, *prepared.bvh, *setup.view.finder, camera.eye,
+                                    axis, {0.5f, 0.5f})};
 }
 
 // Another text where a file of the scene was changed.
@@ -63,7 +63,7 @@ std::string stamp_of(const LoadedScene& loaded) {
         out += fmt::format("{} {};", std::filesystem::file_size(file, none),
                            std::filesystem::last_write_time(file, none).time_since_epoch().count());
     };
-    for (const NamedFile& file : loaded.prepared.files) add(file.path);
+    for (const io::NamedFile& file : loaded.prepared.files) add(file.path);
     if (loaded.prepared.environment) add(*loaded.prepared.environment);
     return out;
 }
@@ -71,7 +71,7 @@ std::string stamp_of(const LoadedScene& loaded) {
 /// Asks a render to pause now and then as long as it lives, often at first.
 class Pauses {
   public:
-    explicit Pauses(RenderMonitor& monitor)
+    explicit Pauses(integrator::RenderMonitor& monitor)
         : thread_([this, &monitor](const std::stop_token& end) {
               double wait_s = 0.05;
               std::unique_lock lock(mutex_);
@@ -154,7 +154,8 @@ void Viewer::inspect(uint64_t version, const std::function<void(const RenderSess
 void Viewer::write(uint64_t version, const std::filesystem::path& file) {
     inspect(version, [&](const RenderSession& session) {
         if (status().stage != LiveStage::Done)
-            throw ArgumentError("picture", "", "is not done yet; wait until all samples are there");
+            throw io::ArgumentError("picture", "",
+                                    "is not done yet; wait until all samples are there");
         session.write(file);
     });
 }
@@ -273,7 +274,7 @@ void Viewer::prepare(const Job& job, const RenderRequest& asked,
               {notices.begin(), notices.begin() + std::ptrdiff_t(told_in_loading)}};
 }
 
-void Viewer::render(const Job& job, RenderMonitor& monitor, const RenderRun& run) {
+void Viewer::render(const Job& job, integrator::RenderMonitor& monitor, const RenderRun& run) {
     {
         const std::lock_guard lock(mutex_);
         if (job.ticket != ticket_) throw Outdated();
@@ -292,14 +293,14 @@ void Viewer::show_rough(const Job& job) {
     const RenderRequest rough =
         rough_of(job.request, rough_divisor(size, samples_per_s_, set_up_s_));
     std::vector<std::string> unheard;
-    const double asked_s = steady_s();
+    const double asked_s = integrator::steady_s();
     prepare(job, rough, unheard);
-    const double start_s = steady_s();
+    const double start_s = integrator::steady_s();
     set_up_s_ = start_s - asked_s;
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     render(job, monitor, {});
-    samples_per_s_ =
-        double(rough.scene.size.x) * rough.scene.size.y / std::max(steady_s() - start_s, 1e-4);
+    samples_per_s_ = double(rough.scene.size.x) * rough.scene.size.y /
+                     std::max(integrator::steady_s() - start_s, 1e-4);
     publish(
         job,
         [&](LiveStatus& now) {
@@ -311,7 +312,7 @@ void Viewer::show_rough(const Job& job) {
 
 void Viewer::show_true(const Job& job) {
     std::vector<std::string> notices;
-    const double start_s = steady_s();
+    const double start_s = integrator::steady_s();
     prepare(job, job.request, notices);
     // Who shares a scene does so in silence.
     for (const std::string& line : scene().notices)
@@ -320,11 +321,12 @@ void Viewer::show_true(const Job& job) {
     const LiveCamera camera = camera_of(session_.setup());
     const std::vector<std::string> channels = session_.light().layout.channels;
     const SampleRequest& samples = job.request.samples;
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     double look_s = 0, looked_s = 0;  // a denoised picture takes its time
-    const auto shown = [&](const Picture& light) {
-        const DisplayOptions& d = session_.display();
-        return picture_of(to_display(light, d.exposure_ev, d.view, AlphaUse::Keep, d.config));
+    const auto shown = [&](const io::Picture& light) {
+        const io::DisplayOptions& d = session_.display();
+        return picture_of(
+            io::to_display(light, d.exposure_ev, d.view, io::AlphaUse::Keep, d.config));
     };
     const auto publish_picture = [&](LiveStage stage) {
         const LivePicture seen = stage == LiveStage::Growing && job.request.denoise
@@ -340,7 +342,7 @@ void Viewer::show_true(const Job& job) {
                          : samples.range                       ? samples.range->count()
                                          : samples.count.value_or(kUsualSamples);
                 now.noise = monitor.noise;
-                now.elapsed_s = steady_s() - start_s;
+                now.elapsed_s = integrator::steady_s() - start_s;
                 now.camera = camera;
                 now.channels = channels;
                 now.notices = notices;
@@ -348,13 +350,13 @@ void Viewer::show_true(const Job& job) {
             std::make_shared<const LivePicture>(seen));
     };
     RenderRun run;
-    run.at_pause = [&](const PathStats&) {
+    run.at_pause = [&](const integrator::PathStats&) {
         answer_questions();
         if (session_.film().taken_range().least == 0) return;  // the rough one has no holes
-        const double now_s = steady_s();
+        const double now_s = integrator::steady_s();
         if (now_s - looked_s < 4 * look_s) return;
         publish_picture(LiveStage::Growing);
-        looked_s = steady_s();
+        looked_s = integrator::steady_s();
         look_s = looked_s - now_s;
     };
     {
@@ -367,4 +369,4 @@ void Viewer::show_true(const Job& job) {
     publish_picture(LiveStage::Done);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

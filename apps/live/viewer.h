@@ -14,7 +14,7 @@
 #include "apps/render/render_session.h"
 #include "apps/request/render_request.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Picture as a page draws it.
 struct LivePicture {
@@ -111,7 +111,7 @@ class Viewer {
     void show_rough(const Job&);
     void show_true(const Job&);
     void prepare(const Job&, const RenderRequest&, std::vector<std::string>& notices);
-    void render(const Job&, RenderMonitor&, const RenderRun&);
+    void render(const Job&, integrator::RenderMonitor&, const RenderRun&);
     [[nodiscard]] bool stale(const Job&) const;
     void publish(const Job&, const std::function<void(LiveStatus&)>& change,
                  std::shared_ptr<const LivePicture> picture = nullptr);
@@ -120,7 +120,7 @@ class Viewer {
     mutable std::condition_variable_any changed_;
     uint64_t ticket_ = 0;  ///< of the newest request, or of having left
     std::optional<Job> next_;
-    RenderMonitor* running_ = nullptr;
+    integrator::RenderMonitor* running_ = nullptr;
     LiveStatus status_;
     std::shared_ptr<const LivePicture> picture_;
     SharedScene scene_;
@@ -132,4 +132,4 @@ class Viewer {
     std::jthread thread_;                      ///< last: it uses the others
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

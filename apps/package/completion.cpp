@@ -6,7 +6,7 @@
 
 #include "apps/cli/command_tree.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -115,4 +115,4 @@ std::string zsh_completion(const CLI::App& app) {
     return out + "    esac\n}\n_petzval \"$@\"\n";
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

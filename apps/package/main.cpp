@@ -12,6 +12,9 @@
 
 namespace {
 
+namespace apps = petzval::apps;
+namespace io = petzval::io;
+
 void write(const std::filesystem::path& to, const std::string& text) {
     std::filesystem::create_directories(to.parent_path());
     std::ofstream file;
@@ -30,13 +33,13 @@ int main(int argc, char** argv) {
     }
     try {
         const std::filesystem::path folder = argv[1];
-        petzval::Session session(petzval::ConsoleStyle::Text, true);
+        apps::Session session(apps::ConsoleStyle::Text, true);
         CLI::App app;
-        petzval::add_all_commands(app, session);
-        for (const auto& [name, text] : petzval::man_pages(app, petzval::program_version()))
+        apps::add_all_commands(app, session);
+        for (const auto& [name, text] : apps::man_pages(app, io::program_version()))
             write(folder / "man" / name, text);
-        write(folder / "bash" / "petzval", petzval::bash_completion(app));
-        write(folder / "zsh" / "_petzval", petzval::zsh_completion(app));
+        write(folder / "bash" / "petzval", apps::bash_completion(app));
+        write(folder / "zsh" / "_petzval", apps::zsh_completion(app));
     } catch (const std::exception& error) {
         std::fprintf(stderr, "petzval_manual: %s\n", error.what());
         return 1;

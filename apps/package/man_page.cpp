@@ -9,7 +9,7 @@
 
 #include "apps/cli/command_tree.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Text as roff reads it: a hyphen is one that can be typed, and no line is a request.
@@ -109,4 +109,4 @@ std::map<std::string, std::string> man_pages(const CLI::App& app, const std::str
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

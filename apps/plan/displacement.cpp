@@ -6,11 +6,11 @@
 
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr double kCells = 144;
-constexpr float kFar_m = FocusPlane::kFar_m;
+constexpr float kFar_m = camera::FocusPlane::kFar_m;
 
 /// Relative slope of a picture at its sharpest edges, 1/px: at the dark foot of an edge between
 /// black and white, drawn by the pixel filter, where mid-grey's floor just holds it.
@@ -46,7 +46,7 @@ float distance(const Scene& scene, const Hit& hit, const Ray& ray) {
 }  // namespace
 
 Displacement displacement_of(const AskedCamera& other, const AskedCamera& base, const Scene& scene,
-                             const Bvh& bvh, const FocusPlane& plane, V2i size_px,
+                             const Bvh& bvh, const camera::FocusPlane& plane, V2i size_px,
                              uint32_t rays_per_cell, bool at_focus) {
     Displacement out;
     const V2i cells = cells_of(size_px);
@@ -69,12 +69,13 @@ Displacement displacement_of(const AskedCamera& other, const AskedCamera& base, 
                     return c.observer.spectral() ? c.observer.draw(u) : Bands::rgb();
                 };
                 const Bands bands = bands_of(base), other_bands = bands_of(other);
-                const CameraSample middle = base.camera.sample({film, sampler}, bands);
-                const CameraSample next = base.camera.sample({beside, sampler}, bands);
-                const CameraSample there = other.camera.sample({film, sampler}, other_bands);
-                for (const CameraPath& path : middle)
+                const camera::CameraSample middle = base.camera.sample({film, sampler}, bands);
+                const camera::CameraSample next = base.camera.sample({beside, sampler}, bands);
+                const camera::CameraSample there =
+                    other.camera.sample({film, sampler}, other_bands);
+                for (const camera::CameraPath& path : middle)
                     light += double(hsum(zero_off(path.lanes, path.weight))) / lane_count(bands.on);
-                for (const CameraPath& path : there)
+                for (const camera::CameraPath& path : there)
                     other_light += double(hsum(zero_off(path.lanes, path.weight))) /
                                    lane_count(other_bands.on);
                 if (middle.empty() || next.empty()) continue;
@@ -82,7 +83,7 @@ Displacement displacement_of(const AskedCamera& other, const AskedCamera& base, 
                 const std::optional<Hit> hit = bvh.intersect(ray);
                 const float met_m = hit ? distance(scene, *hit, ray) : kFar_m;
                 ++out.rays;
-                for (const CameraPath& path : there) {
+                for (const camera::CameraPath& path : there) {
                     const auto at = [&](float m) {
                         return relative_square(path.ray, ray, next[0].ray, m);
                     };
@@ -97,7 +98,7 @@ Displacement displacement_of(const AskedCamera& other, const AskedCamera& base, 
                 }
             }
             out.square_px.values.push_back(count > 0 ? sum / count : 0);
-            out.brightness.values.push_back(symmetric_square(light, other_light, 0));
+            out.brightness.values.push_back(io::symmetric_square(light, other_light, 0));
         }
     return out;
 }
@@ -105,9 +106,10 @@ Displacement displacement_of(const AskedCamera& other, const AskedCamera& base, 
 FilmMap most_error(const Displacement& displacement, double of_itself) {
     FilmMap out = displacement.square_px;
     for (size_t i = 0; i < out.values.size(); ++i)
-        out.values[i] = std::min(kMostSymmetricMse, of_itself + displacement.brightness.values[i] +
-                                                        kSlope * kSlope * out.values[i]);
+        out.values[i] =
+            std::min(io::kMostSymmetricMse, of_itself + displacement.brightness.values[i] +
+                                                kSlope * kSlope * out.values[i]);
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

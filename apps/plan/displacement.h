@@ -8,11 +8,11 @@
 #include "core/spectrum/observer.h"
 #include "core/traversal/bvh.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// A camera with what it needs to be asked.
 struct AskedCamera {
-    const Camera& camera;
+    const camera::Camera& camera;
     const Observer& observer;
 };
 
@@ -28,11 +28,11 @@ struct Displacement {
 /// where it meets nothing, and at the plane of focus and far away too where `at_focus`: the most
 /// counts.
 [[nodiscard]] Displacement displacement_of(const AskedCamera& other, const AskedCamera& base,
-                                           const Scene&, const Bvh&, const FocusPlane&, V2i size_px,
-                                           uint32_t rays_per_cell, bool at_focus);
+                                           const Scene&, const Bvh&, const camera::FocusPlane&,
+                                           V2i size_px, uint32_t rays_per_cell, bool at_focus);
 
 /// Most that the symmetric square of a pixel may be: rays that are moved by a pixel see another
 /// picture altogether, and what is brighter or darker is so everywhere.
 [[nodiscard]] FilmMap most_error(const Displacement&, double of_itself);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// A mean over the pixels of a frame, its standard error, and what pixels that were not sampled
 /// may add.
@@ -18,4 +18,4 @@ struct Estimate {
     [[nodiscard]] double low() const { return std::max(mean - kSure * error, 0.); }
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

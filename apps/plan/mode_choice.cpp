@@ -8,7 +8,7 @@
 #include "apps/setup/equivalent_camera.h"
 #include "camera/setup/lateral_dispersion.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Many samples of few pixels: in a smooth picture well spread samples bring the noise of split rays
@@ -19,14 +19,14 @@ constexpr uint32_t kSamples = 16;
 }  // namespace
 
 ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
-                       TbbExecutor& executor) {
+                       integrator::TbbExecutor& executor) {
     ModeChoice out{0, {}, resolved_request(first)};
     out.scene.spectral.mode = SpectralMode::Wavelengths;
     // Ghosts and diffraction take part in each way alike, and take time.
     const GhostUse ghosts = std::exchange(out.scene.camera.ghosts, GhostUse::Off);
     const DiffractionUse diffraction =
         std::exchange(out.scene.camera.diffraction, DiffractionUse::Off);
-    const auto with = [&](DispersionMode mode) {
+    const auto with = [&](camera::DispersionMode mode) {
         out.scene.camera.dispersion = mode;
         return view_of(first, out.scene, executor);
     };
@@ -36,25 +36,27 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
     const Pilot pilot(request.scene.size,
                       static_cast<int>(std::clamp<double>(pixels, kFewestPixels, kMostPixels)),
                       executor);
-    RenderJob job = request.job;
+    integrator::RenderJob job = request.job;
     job.replicates = 1;  // those of spectra would leave two samples to each
-    const auto sampled = [&](DispersionMode mode) {
+    const auto sampled = [&](camera::DispersionMode mode) {
         auto model = pilot.model(with(mode), job, request.path);
         pilot.sample(*model, kSamples);
         return model;
     };
-    const auto split = sampled(DispersionMode::Split), hero = sampled(DispersionMode::Hero);
+    const auto split = sampled(camera::DispersionMode::Split),
+               hero = sampled(camera::DispersionMode::Hero);
     const double floor = pilot_floor(pilot, *split);
     const auto noise = [&](const PilotModel& model) {
         return noise_of(pilot, model, {split.get(), split.get(), floor});
     };
     const auto ratio = typical_ratio(noise(*hero), noise(*split));
-    out.by_effort = {ModeCost{DispersionMode::Hero, ratio ? *ratio * hero->rays_per_sample() : 0},
-                     ModeCost{DispersionMode::Split, ratio ? split->rays_per_sample() : 0}};
+    out.by_effort = {
+        ModeCost{camera::DispersionMode::Hero, ratio ? *ratio * hero->rays_per_sample() : 0},
+        ModeCost{camera::DispersionMode::Split, ratio ? split->rays_per_sample() : 0}};
     if (out.by_effort[1].effort < out.by_effort[0].effort)
         std::swap(out.by_effort[0], out.by_effort[1]);
-    const RenderSetup shared = with(DispersionMode::Shared);
-    out.dispersion_px = lateral_dispersion_px(
+    const RenderSetup shared = with(camera::DispersionMode::Shared);
+    out.dispersion_px = camera::lateral_dispersion_px(
         *split->setup().view.still, *shared.view.still, split->setup().view.observer,
         split->setup().from.camera.focus_plane(), request.scene.size);
     out.scene.camera.dispersion = out.mode();
@@ -63,4 +65,4 @@ ModeChoice choose_mode(const PlanRequest& request, const RenderSetup& first,
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -5,50 +5,46 @@
 #include <cmath>
 
 #include "apps/plan/rare_light.h"
+#include "apps/setup/tracer.h"
 #include "core/sampling/prepass_seed.h"
 #include "core/spectrum/bands.h"
+#include "integrator/prepass/pilot_batch.h"
 #include "integrator/prepass/pilot_pixels.h"
-#include "integrator/render/render.h"
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr int kFloorPixels = 2048;
 constexpr uint32_t kFloorSamples = 8;
 
-double floor_of(const RenderSetup& setup, const RenderJob& job, const PathOptions& path, V2i size,
-                TbbExecutor& executor) {
-    PathOptions options = path;
-    options.visible_background = setup.view.visible_background;
-    const PathTracer<> tracer(*setup.prepared.scene, *setup.prepared.bvh, *setup.prepared.lights,
-                              options);
-    RenderJob pilot = job;
-    pilot.seed = number_of(PrepassSeed::Noise);
+double floor_of(const RenderSetup& setup, const integrator::RenderJob& job,
+                const integrator::PathOptions& path, V2i size, integrator::TbbExecutor& executor) {
+    constexpr uint32_t kSeed = number_of(PrepassSeed::Noise);
+    const integrator::PilotBatch batch{
+        size, integrator::pilot_pixels(size, kFloorPixels, kSeed), 0, kFloorSamples, {kSeed}, {}};
+    integrator::RenderJob pilot = job;
     pilot.observer = setup.view.observer;
     pilot.replicates = 1;
-    const auto pixels = pilot_pixels(size, kFloorPixels, pilot.seed);
-    std::vector<double> found(pixels.size());
-    std::vector<PathStats> stats(static_cast<size_t>(executor.threads()));
-    executor.run(static_cast<int>(pixels.size()), [&](int task, int worker) {
-        const auto [x, y] = pixels[static_cast<size_t>(task)];
-        Film film(size, {x, y, x + 1, y + 1}, {});
-        render_samples(tracer, *setup.view.camera, pilot, {{x, y}, 0, kFloorSamples}, film,
-                       stats[static_cast<size_t>(worker)]);
-        const V4f c = film.colour(x, y);
-        found[static_cast<size_t>(task)] = double(luminance({c.x, c.y, c.z}));
-    });
-    SymmetricFloor floor;
+    std::vector<double> found(batch.pixels.size());
+    render_pilot(tracer_of(setup, path), *setup.view.camera, pilot, batch, executor,
+                 [&](const integrator::PilotFilm& film) {
+                     const V4f c = film.colour;
+                     found[film.pixel] = double(luminance({c.x, c.y, c.z}));
+                 });
+    io::SymmetricFloor floor;
     for (const double l : found) floor.add(l);
     return floor.floor();
 }
 
 }  // namespace
 
-std::shared_ptr<const NoiseTarget> noise_target(const RenderSetup& setup, const RenderJob& job,
-                                                const PathOptions& path, V2i size_px, double noise,
-                                                TbbExecutor& executor) {
-    auto out = std::make_shared<NoiseTarget>();
+std::shared_ptr<const integrator::NoiseTarget> noise_target(const RenderSetup& setup,
+                                                            const integrator::RenderJob& job,
+                                                            const integrator::PathOptions& path,
+                                                            V2i size_px, double noise,
+                                                            integrator::TbbExecutor& executor) {
+    auto out = std::make_shared<integrator::NoiseTarget>();
     out->noise = noise;
     out->frame_px = size_px;
     out->floor_nits = floor_of(setup, job, path, size_px, executor);
@@ -72,4 +68,4 @@ std::shared_ptr<const NoiseTarget> noise_target(const RenderSetup& setup, const 
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

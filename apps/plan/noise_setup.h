@@ -10,13 +10,13 @@
 #include "integrator/render/executor.h"
 #include "integrator/render/noise_target.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Target of a render. Its floor is that of the measure of plans (io/image/symmetric_mse.h), from a
 /// pilot. A cell on which the light of a lamp lands takes as many samples as kEnoughPaths paths to
 /// the lamp need, by camera rays alone; of what is seldom found otherwise nothing is known.
-[[nodiscard]] std::shared_ptr<const NoiseTarget> noise_target(const RenderSetup&, const RenderJob&,
-                                                              const PathOptions&, V2i size_px,
-                                                              double noise, TbbExecutor&);
+[[nodiscard]] std::shared_ptr<const integrator::NoiseTarget> noise_target(
+    const RenderSetup&, const integrator::RenderJob&, const integrator::PathOptions&, V2i size_px,
+    double noise, integrator::TbbExecutor&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,30 +4,24 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/setup/tracer.h"
 #include "core/sampling/prepass_seed.h"
 #include "core/sampling/sampler.h"
-#include "integrator/render/render.h"
+#include "integrator/prepass/pilot_batch.h"
 #include "io/base/clock.h"
 
-namespace petzval {
-namespace {
+namespace petzval::apps {
 
-PathOptions with_background(PathOptions options, const View& view) {
-    options.visible_background = view.visible_background;
-    return options;
-}
-
-}  // namespace
-
-RenderSetup view_of(const RenderSetup& first, const SceneRequest& scene, TbbExecutor& executor) {
+RenderSetup view_of(const RenderSetup& first, const SceneRequest& scene,
+                    integrator::TbbExecutor& executor) {
     return executor.inside([&] { return set_up_view(first, scene, [](const std::string&) {}); });
 }
 
-PilotModel::PilotModel(RenderSetup setup, const RenderJob& job, const PathOptions& options,
+PilotModel::PilotModel(RenderSetup setup, const integrator::RenderJob& job,
+                       const integrator::PathOptions& options,
                        const std::vector<PilotPixel>& chosen)
     : setup_(std::move(setup)),
-      tracer_(*setup_.prepared.scene, *setup_.prepared.bvh, *setup_.prepared.lights,
-              with_background(options, setup_.view)),
+      tracer_(tracer_of(setup_, options)),
       sums_(chosen.size()),
       pixel_s_(chosen.size()) {
     for (const PilotPixel& pixel : chosen) weights_.push_back(pixel.weight);
@@ -55,9 +49,9 @@ double PilotModel::lens_rays() const {
     if (stats_.lens_lanes.drawn == 0) return 0;
     if (!setup_.view.observer.spectral()) return 1;
     switch (setup_.from.camera.dispersion()) {
-        case DispersionMode::Shared:
+        case camera::DispersionMode::Shared:
             return 1;
-        case DispersionMode::Hero:
+        case camera::DispersionMode::Hero:
             return 2;
         default:
             return 3;
@@ -84,43 +78,36 @@ double PilotModel::cpu_s_per_sample() const {
     return even > 0 ? mean * weighed / weights / even : mean;
 }
 
-Pilot::Pilot(V2i size_px, PilotPixels chosen, TbbExecutor& executor, uint32_t seed)
+Pilot::Pilot(V2i size_px, PilotPixels chosen, integrator::TbbExecutor& executor, uint32_t seed)
     : size_px_(size_px), seed_(seed), chosen_(std::move(chosen)), executor_(executor) {}
 
-Pilot::Pilot(V2i size_px, int wanted, TbbExecutor& executor, uint32_t seed)
+Pilot::Pilot(V2i size_px, int wanted, integrator::TbbExecutor& executor, uint32_t seed)
     : Pilot(size_px, even_pilot_pixels(size_px, wanted, seed), executor, seed) {}
 
-std::unique_ptr<PilotModel> Pilot::model(RenderSetup setup, const RenderJob& job,
-                                         const PathOptions& options) const {
+std::unique_ptr<PilotModel> Pilot::model(RenderSetup setup, const integrator::RenderJob& job,
+                                         const integrator::PathOptions& options) const {
     return std::unique_ptr<PilotModel>(
         new PilotModel(std::move(setup), job, options, chosen_.pixels));
 }
 
 void Pilot::sample(PilotModel& model, uint32_t samples) const {
-    std::vector<PathStats> stats(static_cast<size_t>(executor_.threads()));
-    const double start_s = process_cpu_s();
-    executor_.run(static_cast<int>(pixels()), [&](int task, int worker) {
-        const auto pixel = static_cast<size_t>(task);
-        const auto [x, y] = chosen_.pixels[pixel].pixel;
-        const double pixel_start_s = steady_s();
-        RenderJob job = model.job_;
-        for (uint32_t k = 0; k < kPilotReplicates; ++k) {
-            Film film(size_px_, {x, y, x + 1, y + 1}, {});
-            job.seed = number_of(PrepassSeed::Plan) + kPilotReplicates * seed_ + k;
-            render_samples(model.tracer_, *model.setup_.view.camera, job,
-                           {{x, y}, model.samples_, samples}, film,
-                           stats[static_cast<size_t>(worker)]);
-            const V4f c = film.colour(x, y);
-            model.sums_[pixel][k] += V3d(c.x, c.y, c.z) * double(film.sample_count(x, y));
-        }
-        model.pixel_s_[pixel] += steady_s() - pixel_start_s;
-    });
-    model.cpu_s_ += process_cpu_s() - start_s;
+    integrator::PilotBatch batch{size_px_, {}, model.samples_, samples, {}, {}};
+    for (const PilotPixel& pixel : chosen_.pixels) batch.pixels.push_back(pixel.pixel);
+    for (uint32_t k = 0; k < kPilotReplicates; ++k)
+        batch.seeds.push_back(number_of(PrepassSeed::Plan) + kPilotReplicates * seed_ + k);
+    const double start_s = io::process_cpu_s();
+    model.stats_ += render_pilot(model.tracer_, *model.setup_.view.camera, model.job_, batch,
+                                 executor_, [&](const integrator::PilotFilm& film) {
+                                     const V4f c = film.colour;
+                                     model.sums_[film.pixel][film.replicate] +=
+                                         V3d(c.x, c.y, c.z) * double(film.samples);
+                                     model.pixel_s_[film.pixel] += film.seconds;
+                                 });
+    model.cpu_s_ += io::process_cpu_s() - start_s;
     model.samples_ = std::max(model.samples_, samples);
-    for (const PathStats& s : stats) model.stats_ += s;
     std::vector<PilotValues> turn;
     for (size_t p = 0; p < pixels(); ++p) turn.push_back(model.means(p));
     model.turns_.push_back(std::move(turn));
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

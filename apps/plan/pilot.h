@@ -14,10 +14,11 @@
 #include "integrator/render/executor.h"
 #include "integrator/render/render_job.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Another view of a scene that is set up, without notices.
-[[nodiscard]] RenderSetup view_of(const RenderSetup& first, const SceneRequest&, TbbExecutor&);
+[[nodiscard]] RenderSetup view_of(const RenderSetup& first, const SceneRequest&,
+                                  integrator::TbbExecutor&);
 
 /// Independent replicates of the sampler in each pixel: what they have in common is no noise.
 inline constexpr uint32_t kPilotReplicates = 4;
@@ -29,7 +30,7 @@ class PilotModel {
   public:
     [[nodiscard]] const RenderSetup& setup() const { return setup_; }
     [[nodiscard]] uint32_t samples() const { return samples_; }  ///< of each replicate of a pixel
-    [[nodiscard]] const PathStats& stats() const { return stats_; }
+    [[nodiscard]] const integrator::PathStats& stats() const { return stats_; }
     /// Mean of each replicate of a pilot pixel.
     [[nodiscard]] PilotValues means(size_t pixel) const;
     /// Means after each turn of Pilot::sample(), by turn and pilot pixel.
@@ -42,19 +43,20 @@ class PilotModel {
 
   private:
     friend class Pilot;
-    PilotModel(RenderSetup, const RenderJob&, const PathOptions&, const std::vector<PilotPixel>&);
+    PilotModel(RenderSetup, const integrator::RenderJob&, const integrator::PathOptions&,
+               const std::vector<PilotPixel>&);
     [[nodiscard]] double lens_rays() const;
     [[nodiscard]] double rays_to_find_targets() const;
 
     RenderSetup setup_;
-    RenderJob job_;
-    PathTracer<> tracer_;
+    integrator::RenderJob job_;
+    integrator::PathTracer<> tracer_;
     std::vector<double> weights_;  ///< of the pilot pixels
     std::vector<PilotValues> sums_;
     std::vector<std::vector<PilotValues>> turns_;
     std::vector<double> pixel_s_;  ///< time that each pilot pixel took, as the thread saw it
     uint32_t samples_ = 0;
-    PathStats stats_;
+    integrator::PathStats stats_;
     double cpu_s_ = 0;
 };
 
@@ -62,16 +64,16 @@ class PilotModel {
 /// pixels and seed alone.
 class Pilot {
   public:
-    Pilot(V2i size_px, PilotPixels, TbbExecutor&, uint32_t seed = 0);
+    Pilot(V2i size_px, PilotPixels, integrator::TbbExecutor&, uint32_t seed = 0);
     /// wanted: about so many pixels, one in each cell of an even grid.
-    Pilot(V2i size_px, int wanted, TbbExecutor&, uint32_t seed = 0);
+    Pilot(V2i size_px, int wanted, integrator::TbbExecutor&, uint32_t seed = 0);
 
     [[nodiscard]] size_t pixels() const { return chosen_.pixels.size(); }
     [[nodiscard]] V2i size_px() const { return size_px_; }
     [[nodiscard]] const PilotPixels& chosen() const { return chosen_; }
     /// Uses job.sampler, job.filter and job.replicates; ignores the rest.
-    [[nodiscard]] std::unique_ptr<PilotModel> model(RenderSetup, const RenderJob&,
-                                                    const PathOptions&) const;
+    [[nodiscard]] std::unique_ptr<PilotModel> model(RenderSetup, const integrator::RenderJob&,
+                                                    const integrator::PathOptions&) const;
     /// Renders on until each replicate of a pixel has so many samples.
     void sample(PilotModel&, uint32_t samples) const;
 
@@ -79,7 +81,7 @@ class Pilot {
     V2i size_px_;
     uint32_t seed_;
     PilotPixels chosen_;
-    TbbExecutor& executor_;
+    integrator::TbbExecutor& executor_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

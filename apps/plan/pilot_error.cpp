@@ -7,7 +7,7 @@
 #include "core/spectrum/bands.h"
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr size_t kChannels = 3;
@@ -160,7 +160,7 @@ double mean_luminance(const Pilot& pilot, const PilotModel& model) {
 }
 
 double pilot_floor(const Pilot& pilot, const PilotModel& model, const std::vector<V3d>& least) {
-    SymmetricFloor floor;
+    io::SymmetricFloor floor;
     for (size_t p = 0; p < pilot.pixels(); ++p) {
         const bool known = !least.empty() && least[p].length2() > 0;
         floor.add(luminance_of(known ? least[p] : mean_of(model, p)),
@@ -228,7 +228,7 @@ PilotNoise noise_of(const Pilot& pilot, const PilotModel& model, const PilotScal
             sum += v;
             squares += v * v;
             out.blocks[hash32(static_cast<uint32_t>(p)) % out.blocks.size()] +=
-                pilot.chosen().pixels[p].weight * std::min(mean, kMostSymmetricMse);
+                pilot.chosen().pixels[p].weight * std::min(mean, io::kMostSymmetricMse);
         }
         out.variances.push_back(mean_of(values, pilot.chosen().pixels));
         out.parts = squares > 0 ? sum * sum / squares : 0;
@@ -236,4 +236,4 @@ PilotNoise noise_of(const Pilot& pilot, const PilotModel& model, const PilotScal
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 
 #include "apps/plan/pilot.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// A model that counts `factor` times in a difference.
 struct PilotTerm {
@@ -56,4 +56,4 @@ struct PilotNoise {
 [[nodiscard]] std::optional<double> typical_ratio(const PilotNoise&, const PilotNoise& other);
 [[nodiscard]] PilotNoise noise_of(const Pilot&, const PilotModel&, const PilotScale&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 #include "core/sampling/distribution.h"
 #include "integrator/prepass/pilot_pixels.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr double kRegionShare = 0.25, kEmphasisShare = 0.25;
@@ -89,41 +89,43 @@ double PilotPixels::unseen(V2i size_px, const FilmMap& most) const {
 
 PilotPixels even_pilot_pixels(V2i size_px, int wanted, uint32_t seed) {
     PilotPixels out;
-    const auto pixels = pilot_pixels(size_px, wanted, seed);
+    const auto pixels = integrator::pilot_pixels(size_px, wanted, seed);
     const auto count = static_cast<double>(pixels.size());
     const double frame = double(size_px.x) * double(size_px.y);
     for (const auto& pixel : pixels)
         out.pixels.push_back(
-            {pixel, static_cast<double>(pilot_cell_area_px(size_px, wanted, pixel)) / frame});
+            {pixel,
+             static_cast<double>(integrator::pilot_cell_area_px(size_px, wanted, pixel)) / frame});
     out.density.values = {count / frame};
     return out;
 }
 
-PilotPixels choose_pilot_pixels(V2i size_px, int wanted, std::vector<FilmRegion> regions,
+PilotPixels choose_pilot_pixels(V2i size_px, int wanted, std::vector<camera::FilmRegion> regions,
                                 const FilmMap& emphasis, uint32_t seed) {
     const double pixels = double(size_px.x) * double(size_px.y);
     if (pixels <= wanted) return all_pixels(size_px);
-    std::erase_if(regions, [&](const FilmRegion& r) {
+    std::erase_if(regions, [&](const camera::FilmRegion& r) {
         const auto area = static_cast<double>(r.area_px());
         return !(area > 0) || area > kLargeRegion * pixels;
     });
     // Where there are more regions than pilot pixels for them, the small ones need them most.
     const auto of_regions = static_cast<size_t>(std::max(1., kRegionShare * wanted));
-    std::stable_sort(regions.begin(), regions.end(), [](const FilmRegion& a, const FilmRegion& b) {
-        return a.area_px() < b.area_px();
-    });
+    std::stable_sort(regions.begin(), regions.end(),
+                     [](const camera::FilmRegion& a, const camera::FilmRegion& b) {
+                         return a.area_px() < b.area_px();
+                     });
     if (regions.size() > of_regions) regions.resize(of_regions);
     PilotPixels out;
     const auto each = regions.empty() ? 0 : static_cast<int64_t>(of_regions / regions.size());
     const Emphasis emphasized = emphasis_of(size_px, emphasis);
     const auto of_emphasis = static_cast<uint32_t>(kEmphasisShare * wanted);
     const int evenly = wanted - int(of_emphasis) - int(each) * int(regions.size());
-    const auto even = pilot_pixels(size_px, evenly, seed);
+    const auto even = integrator::pilot_pixels(size_px, evenly, seed);
 
     std::set<std::array<int, 2>> certain;
     std::map<std::array<int, 2>, int> times;
-    std::vector<const FilmRegion*> sampled;
-    for (const FilmRegion& region : regions) {
+    std::vector<const camera::FilmRegion*> sampled;
+    for (const camera::FilmRegion& region : regions) {
         const int64_t area = region.area_px();
         if (area > each) {
             sampled.push_back(&region);
@@ -156,8 +158,8 @@ PilotPixels choose_pilot_pixels(V2i size_px, int wanted, std::vector<FilmRegion>
         if (certain.contains(pixel)) continue;
         double density =
             emphasized.density[emphasis.cell_at(size_px, pixel[0], pixel[1])] * of_emphasis +
-            1 / static_cast<double>(pilot_cell_area_px(size_px, evenly, pixel));
-        for (const FilmRegion* region : sampled)
+            1 / static_cast<double>(integrator::pilot_cell_area_px(size_px, evenly, pixel));
+        for (const camera::FilmRegion* region : sampled)
             if (region->contains(pixel[0], pixel[1]))
                 density += static_cast<double>(each) / static_cast<double>(region->area_px());
         out.pixels.push_back({pixel, count / (density * pixels)});
@@ -166,4 +168,4 @@ PilotPixels choose_pilot_pixels(V2i size_px, int wanted, std::vector<FilmRegion>
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

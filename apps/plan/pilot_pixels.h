@@ -7,7 +7,7 @@
 
 #include "camera/setup/film_region.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 struct PilotPixel {
     std::array<int, 2> pixel;
@@ -37,7 +37,7 @@ struct PilotPixels {
     /// Above 0 everywhere; where all are certain it does not matter.
     FilmMap density;
     bool all_certain = false;
-    std::vector<FilmRegion> regions;  ///< those that got pilot pixels of their own
+    std::vector<camera::FilmRegion> regions;  ///< those that got pilot pixels of their own
 
     /// 95 % upper bound of the mean error by pixels that were not sampled and differ from all that
     /// were; `most` bounds the error of one pixel. None of them was met where 3 were to be
@@ -55,7 +55,7 @@ struct PilotPixels {
 /// there are more regions than looks for them, the largest get none. They follow from the arguments
 /// alone.
 [[nodiscard]] PilotPixels choose_pilot_pixels(V2i size_px, int wanted,
-                                              std::vector<FilmRegion> regions,
+                                              std::vector<camera::FilmRegion> regions,
                                               const FilmMap& emphasis, uint32_t seed);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 #include "apps/plan/plan_comparison.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Pilot pixels of a plan, and bounds of those of a render that chooses for itself.
@@ -37,8 +37,9 @@ size_t cheapest(const std::vector<PlanCandidate>& all, double tolerance) {
 }
 
 // Plan for spectra through a lens: nothing is left out of them, and only the mode is chosen.
-Plan plan_with_bins(const PlanRequest& request, const RenderSetup& first, TbbExecutor& executor,
-                    const Notice& notice, double most_samples) {
+Plan plan_with_bins(const PlanRequest& request, const RenderSetup& first,
+                    integrator::TbbExecutor& executor, const io::Notice& notice,
+                    double most_samples) {
     ModeChoice found = choose_mode(request, first, executor);
     PlanRequest resolved = request;
     resolved.scene.camera.dispersion = found.mode();
@@ -49,7 +50,8 @@ Plan plan_with_bins(const PlanRequest& request, const RenderSetup& first, TbbExe
 }
 
 // Setup in place of the first: the times of both count, and a plan decided.
-RenderSetup replaced(const RenderSetup& first, const SceneRequest& scene, TbbExecutor& executor) {
+RenderSetup replaced(const RenderSetup& first, const SceneRequest& scene,
+                     integrator::TbbExecutor& executor) {
     RenderSetup setup = view_of(first, scene, executor);
     setup.from.load_s += first.from.load_s;
     setup.from.bvh_s += first.from.bvh_s;
@@ -66,8 +68,8 @@ const PlanCandidate* Plan::find(PlanModel model) const {
     return found == candidates.end() ? nullptr : &*found;
 }
 
-Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& notice,
-               double most_samples) {
+Plan make_plan(const PlanRequest& request, integrator::TbbExecutor& executor,
+               const io::Notice& notice, double most_samples) {
     std::vector<std::string> notices;
     const RenderSetup first = executor.inside([&] {
         return set_up_render(request.scene,
@@ -82,7 +84,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     if (open.spectral) compared.add_rgb();
     if (open.dispersion) {
         compared.add_shared();
-        compared.add_unbiased(PlanModel::Hero, DispersionMode::Hero);
+        compared.add_unbiased(PlanModel::Hero, camera::DispersionMode::Hero);
     }
     compared.measure(most_samples, true);
 
@@ -102,7 +104,7 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
         plan.precision = find_precision(request, first, chosen.scene, executor);
         if (plan.precision) {
             plan.scene.camera.precision = plan.precision->precision;
-            if (plan.precision->precision == Precision::Float) {
+            if (plan.precision->precision == camera::Precision::Float) {
                 plan.bias = std::hypot(plan.bias, std::sqrt(plan.precision->square));
                 tolerance = std::sqrt(tolerance * tolerance - plan.precision->square);
             }
@@ -117,9 +119,10 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
     if (plan.lights) plan.scene.light_choice = plan.lights->kind;
     const double samples = std::ceil(chosen.samples_for(tolerance));
     if (!(samples <= kMostPlannedSamples))
-        throw ArgumentError("⟨tolerance⟩", "",
-                            "would take more than {:.2g} samples of each pixel; give a larger one",
-                            kMostPlannedSamples);
+        throw io::ArgumentError(
+            "⟨tolerance⟩", "",
+            "would take more than {:.2g} samples of each pixel; give a larger one",
+            kMostPlannedSamples);
     plan.samples = static_cast<uint64_t>(samples);
     // Standard errors of spectra come from as many replicates, each with the same share of the
     // samples.
@@ -138,15 +141,16 @@ Plan make_plan(const PlanRequest& request, TbbExecutor& executor, const Notice& 
 
 namespace {
 
-RenderSetup set_up_like(const PlanRequest& request, const Notice& notice, const PhaseSink& begins) {
+RenderSetup set_up_like(const PlanRequest& request, const io::Notice& notice,
+                        const PhaseSink& begins) {
     if (request.like) return set_up_view(*request.like, request.scene, notice, begins);
     return set_up_render(request.scene, notice, begins, request.frames);
 }
 
 }  // namespace
 
-AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, const Notice& notice,
-                         const PhaseSink& begins) {
+AutoSetup set_up_planned(const PlanRequest& request, integrator::TbbExecutor& executor,
+                         const io::Notice& notice, const PhaseSink& begins) {
     AutoSetup out;
     RenderSetup first = executor.inside([&] { return set_up_like(request, notice, begins); });
     const PlanOpen open(request.scene, first);
@@ -175,7 +179,7 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
             choice.taken = index;
             other = chosen->scene;
             predicted_error = chosen->predicted();
-            if (open.dispersion) choice.dispersion = DispersionMode::Shared;
+            if (open.dispersion) choice.dispersion = camera::DispersionMode::Shared;
             choice.dispersion_px = compared.dispersion_px();
         }
     }
@@ -191,4 +195,4 @@ AutoSetup set_up_planned(const PlanRequest& request, TbbExecutor& executor, cons
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -14,7 +14,7 @@
 #include "apps/setup/diffraction.h"
 #include "integrator/render/executor.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Choice of a plan, and every figure that led to it. plan_wording.h puts it into sentences.
 struct Plan {
@@ -53,13 +53,13 @@ struct Plan {
 
 /// Plan of a scene, from measuring it through all models; takes up to most_samples in all, some
 /// seconds. Throws as set_up_render does.
-[[nodiscard]] Plan make_plan(const PlanRequest&, TbbExecutor&, const Notice& notice,
+[[nodiscard]] Plan make_plan(const PlanRequest&, integrator::TbbExecutor&, const io::Notice& notice,
                              double most_samples = 5e6);
 
 /// Choice that `auto` made for a render, and its grounds.
 struct AutoChoice {
     /// Dispersion mode; absent where it was not open.
-    std::optional<DispersionMode> dispersion;
+    std::optional<camera::DispersionMode> dispersion;
     double dispersion_px = 0;
     std::string dispersive_lens;
     std::optional<ModeChoice> measured_mode;  ///< where choose_mode() was asked
@@ -79,7 +79,7 @@ struct AutoSetup {
 /// frame, and that of choose_mode(): samples, seed and crop do not matter.
 /// Without a pilot where nothing depends on wavelength, and without the first for frames too small
 /// for it. No camera that was asked for is replaced.
-[[nodiscard]] AutoSetup set_up_planned(const PlanRequest&, TbbExecutor&, const Notice& notice,
-                                       const PhaseSink& begins = {});
+[[nodiscard]] AutoSetup set_up_planned(const PlanRequest&, integrator::TbbExecutor&,
+                                       const io::Notice& notice, const PhaseSink& begins = {});
 
-}  // namespace petzval
+}  // namespace petzval::apps

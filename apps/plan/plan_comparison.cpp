@@ -10,7 +10,7 @@
 #include "camera/setup/lateral_dispersion.h"
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr uint32_t kLeastSamples = 4, kThoroughSamples = 32;
@@ -81,7 +81,7 @@ double PlanCandidate::variance_with(uint64_t samples) const {
         const double block = std::exp2(digit);
         sum += block_variance(digit) * block * block / (n * n);
     }
-    return std::min(sum, kMostSymmetricMse);
+    return std::min(sum, io::kMostSymmetricMse);
 }
 
 bool PlanCandidate::noise_at_least() const {
@@ -114,7 +114,7 @@ PlanOpen::PlanOpen(const SceneRequest& request, const RenderSetup& setup) {
 }
 
 PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& first,
-                               const PlanOpen& open, int pixels, TbbExecutor& executor)
+                               const PlanOpen& open, int pixels, integrator::TbbExecutor& executor)
     : request_(request),
       first_(first),
       open_(open),
@@ -124,8 +124,8 @@ PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& fi
     std::optional<RenderSetup> shared;
     if (open.dispersion) {
         shared_scene_ = full_scene_;
-        full_scene_.camera.dispersion = DispersionMode::Split;
-        shared_scene_.camera.dispersion = DispersionMode::Shared;
+        full_scene_.camera.dispersion = camera::DispersionMode::Split;
+        shared_scene_.camera.dispersion = camera::DispersionMode::Shared;
         shared = this->open(shared_scene_);
     }
     RenderSetup full = this->open(full_scene_);
@@ -137,9 +137,9 @@ PlanComparison::PlanComparison(const PlanRequest& request, const RenderSetup& fi
 
 void PlanComparison::compare_dispersion(const RenderSetup& split, const RenderSetup& shared) {
     const V2i size = request_.scene.size;
-    const FocusPlane focus = first_.from.camera.focus_plane();
-    dispersion_px_ = lateral_dispersion_px(*split.view.still, *shared.view.still,
-                                           split.view.observer, focus, size);
+    const camera::FocusPlane focus = first_.from.camera.focus_plane();
+    dispersion_px_ = camera::lateral_dispersion_px(*split.view.still, *shared.view.still,
+                                                   split.view.observer, focus, size);
     dispersed_ = most_error(
         displacement_of({*split.view.still, split.view.observer},
                         {*shared.view.still, shared.view.observer}, *first_.prepared.scene,
@@ -155,12 +155,12 @@ void PlanComparison::choose_pilot_pixels(int wanted) {
     features_ = features_of(first_);
     glass_disperses_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                                    [](const Material& m) { return m.glass && m.refracts(); });
-    regions_ = film_regions(*first_.view.still, size, features_);
+    regions_ = camera::film_regions(*first_.view.still, size, features_);
     lamps_ = seen_lamps(first_, size, features_, regions_);
     pilot_.emplace(
         size,
-        petzval::choose_pilot_pixels(size, wanted, regions_,
-                                     with_edges(open_.dispersion ? dispersed_ : even_map(size)), 0),
+        apps::choose_pilot_pixels(size, wanted, regions_,
+                                  with_edges(open_.dispersion ? dispersed_ : even_map(size)), 0),
         executor_);
 }
 
@@ -189,7 +189,7 @@ void PlanComparison::add_camera(PlanModel kind, const SceneRequest& scene) {
         request_.scene.size, kCameraRays, false);
     FilmMap most = most_error(displacement, 0);
     // What no ray met may lie at another depth, where the cameras differ by more.
-    const double not_met = 3 * kMostSymmetricMse / static_cast<double>(displacement.rays + 1);
+    const double not_met = 3 * io::kMostSymmetricMse / static_cast<double>(displacement.rays + 1);
     add(kind, scene, most);
     if (!pilot_->chosen().all_certain) entries_.back().unseen += not_met;
 }
@@ -206,11 +206,12 @@ void PlanComparison::add_simpler_cameras() {
 void PlanComparison::add_rgb() {
     SceneRequest scene = full_scene_;
     scene.spectral.mode = SpectralMode::Rgb;
-    if (open_.dispersion) scene.camera.dispersion = DispersionMode::Shared;
+    if (open_.dispersion) scene.camera.dispersion = camera::DispersionMode::Shared;
     FilmMap most = open_.dispersion ? dispersed_ : even_map(request_.scene.size);
     const bool by_scene = !scene_reasons(*first_.prepared.scene).empty();
     for (double& value : most.values)
-        value = by_scene ? kMostSymmetricMse : std::min(value + kRgbItself, kMostSymmetricMse);
+        value =
+            by_scene ? io::kMostSymmetricMse : std::min(value + kRgbItself, io::kMostSymmetricMse);
     add(PlanModel::Rgb, scene, most);
 }
 
@@ -222,7 +223,7 @@ void PlanComparison::add_shared() {
                         nullptr});
 }
 
-void PlanComparison::add_unbiased(PlanModel kind, DispersionMode dispersion) {
+void PlanComparison::add_unbiased(PlanModel kind, camera::DispersionMode dispersion) {
     SceneRequest scene = full_scene_;
     scene.camera.dispersion = dispersion;
     auto own = model(open(scene));
@@ -266,7 +267,8 @@ PilotScale PlanComparison::scale_of(const PilotModel& model, double floor) const
 }
 
 double PlanComparison::missed(PlanModel kind, const RareLight& rare) const {
-    if (kind == PlanModel::Rgb && glass_disperses_ && rare.by_chance()) return kMostSymmetricMse;
+    if (kind == PlanModel::Rgb && glass_disperses_ && rare.by_chance())
+        return io::kMostSymmetricMse;
     return rare.lost;
 }
 
@@ -345,4 +347,4 @@ std::optional<double> PlanComparison::light_of(const SceneRequest& scene, size_t
     return mean_luminance(*pilot_, *other) / of_own;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 #include "apps/plan/pilot.h"
 #include "apps/plan/plan_types.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Comparison of models by a pilot. What the constructor takes must outlive it.
 class PlanComparison {
@@ -18,7 +18,7 @@ class PlanComparison {
     /// many pixels are rendered, where things that a few pixels hold have pilot pixels of their
     /// own.
     PlanComparison(const PlanRequest&, const RenderSetup&, const PlanOpen&, int pixels,
-                   TbbExecutor&);
+                   integrator::TbbExecutor&);
 
     /// Adds cameras without glass, and without an iris, in place of the setup's.
     void add_simpler_cameras();
@@ -27,7 +27,7 @@ class PlanComparison {
     void add_shared();
     /// Adds a dispersion mode without an error, whatever wavelengths do: only its cost and noise
     /// are measured.
-    void add_unbiased(PlanModel, DispersionMode);
+    void add_unbiased(PlanModel, camera::DispersionMode);
 
     /// Whether a candidate can be found to be inside: what pixels that are not sampled may hold
     /// is not too much for all of them.
@@ -79,9 +79,9 @@ class PlanComparison {
     const RenderSetup& first_;
     PlanOpen open_;
     SceneRequest full_scene_, shared_scene_;
-    TbbExecutor& executor_;
+    integrator::TbbExecutor& executor_;
     std::vector<SmallFeature> features_;
-    std::vector<FilmRegion> regions_;
+    std::vector<camera::FilmRegion> regions_;
     std::vector<SeenLamp> lamps_;
     std::vector<V3d> least_;  ///< least_means() of the pilot pixels
     FilmMap dispersed_;       ///< most error of rays that do not disperse
@@ -92,4 +92,4 @@ class PlanComparison {
     bool glass_disperses_ = false;  ///< of a material
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 #include "apps/plan/displacement.h"
 #include "apps/setup/ghosts.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Share of what a simpler model may err that floats may take: what they change is seldom more than
@@ -21,14 +21,15 @@ constexpr double kWorthIt = 0.95;
 }  // namespace
 
 std::optional<PrecisionFound> find_precision(const PlanRequest& request, const RenderSetup& first,
-                                             const SceneRequest& chosen, TbbExecutor& executor) {
-    if (!first.from.camera.traced || chosen.camera.precision == Precision::Double)
+                                             const SceneRequest& chosen,
+                                             integrator::TbbExecutor& executor) {
+    if (!first.from.camera.traced || chosen.camera.precision == camera::Precision::Double)
         return std::nullopt;
     SceneRequest floats = chosen, doubles = chosen;
     // One ray for all wavelengths: what they are apart is no matter of precision.
-    floats.camera.dispersion = doubles.camera.dispersion = DispersionMode::Shared;
+    floats.camera.dispersion = doubles.camera.dispersion = camera::DispersionMode::Shared;
     floats.camera.ghosts = doubles.camera.ghosts = GhostUse::Off;
-    doubles.camera.precision = Precision::Double;
+    doubles.camera.precision = camera::Precision::Double;
     const RenderSetup in_float = view_of(first, floats, executor),
                       in_double = view_of(first, doubles, executor);
     const V2i size = request.scene.size;
@@ -41,7 +42,7 @@ std::optional<PrecisionFound> find_precision(const PlanRequest& request, const R
     const double mean = std::accumulate(most.values.begin(), most.values.end(), 0.) /
                         static_cast<double>(most.values.size());
     const double allowed = kFloatShare * kBiasShare * request.tolerance * request.tolerance;
-    return PrecisionFound{mean <= allowed ? Precision::Float : Precision::Double,
+    return PrecisionFound{mean <= allowed ? camera::Precision::Float : camera::Precision::Double,
                           std::sqrt(*std::max_element(squares.begin(), squares.end())), mean};
 }
 
@@ -69,4 +70,4 @@ GhostsFound find_ghosts(const PlanComparison& compared, const RenderSetup& first
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,11 +6,11 @@
 
 #include "apps/plan/plan_comparison.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Whether rays through the lens need doubles.
 struct PrecisionFound {
-    Precision precision;
+    camera::Precision precision;
     double apart_px;  ///< most that rays in floats and in doubles part, RMS over a part of the film
     double square;    ///< upper bound of the symmetric MSE of floats, by where the rays go
 };
@@ -18,7 +18,7 @@ struct PrecisionFound {
 [[nodiscard]] std::optional<PrecisionFound> find_precision(const PlanRequest&,
                                                            const RenderSetup& first,
                                                            const SceneRequest& chosen,
-                                                           TbbExecutor&);
+                                                           integrator::TbbExecutor&);
 
 /// How lights are chosen at a path's vertices.
 struct LightsFound {
@@ -41,4 +41,4 @@ struct GhostsFound {
 [[nodiscard]] GhostsFound find_ghosts(const PlanComparison&, const RenderSetup& first,
                                       const SceneRequest& chosen, size_t candidate);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,7 +4,7 @@
 #include "apps/plan/plan_wording.h"
 #include "apps/request/option_text.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 nlohmann::ordered_json json_of(const Plan& plan) {
     nlohmann::ordered_json out;
@@ -27,4 +27,4 @@ nlohmann::ordered_json json_of(const Plan& plan) {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -5,10 +5,10 @@
 
 #include "apps/plan/plan.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Plan for programs: each choice with its reason, the samples, and what error, CPU time and wall
 /// time (least, mean, most) are predicted.
 [[nodiscard]] nlohmann::ordered_json json_of(const Plan&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

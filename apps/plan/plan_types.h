@@ -14,7 +14,7 @@
 #include "integrator/render/render_job.h"
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Share of the squared tolerance that a simpler model may err; the rest is for noise.
 inline constexpr double kBiasShare = 0.5;
@@ -23,8 +23,9 @@ inline constexpr double kMostPlannedSamples = 1 << 30;
 
 struct PlanRequest {
     SceneRequest scene;
-    RenderJob job;  ///< sampler and filter count: samples and seed do not, nor does a crop
-    PathOptions path;
+    integrator::RenderJob
+        job;  ///< sampler and filter count: samples and seed do not, nor does a crop
+    integrator::PathOptions path;
     double tolerance = kUsualTolerance;  ///< above 0
     const RenderSetup* like = nullptr;   ///< a setup of which what is the same is taken
     FrameReuse* frames = nullptr;        ///< of a sequence, which it is part of
@@ -61,11 +62,11 @@ struct PlanCandidate {
 
     /// Upper bound of the error without noise.
     [[nodiscard]] double predicted() const {
-        return std::sqrt(std::min(square_bias.high(), kMostSymmetricMse));
+        return std::sqrt(std::min(square_bias.high(), io::kMostSymmetricMse));
     }
     /// Measured error.
     [[nodiscard]] double found() const {
-        return std::sqrt(std::clamp(square_bias.mean, 0., kMostSymmetricMse));
+        return std::sqrt(std::clamp(square_bias.mean, 0., io::kMostSymmetricMse));
     }
     /// Upper bound of the variance with so many samples, 1 at least, with what light that was
     /// hardly met may add: of the symmetric MSE by noise where noise is small, and never more than
@@ -82,4 +83,4 @@ struct PlanCandidate {
     [[nodiscard]] double samples_for(double tolerance) const;
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,19 +9,20 @@
 #include "apps/setup/spectral_wording.h"
 #include "io/base/format.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Words for a candidate that was not taken.
 std::string off(const PlanCandidate& c) {
     if (c.outside)
-        return fmt::format("{} would be off by {}", name_of(c.model), percent(c.found()));
-    return c.inside ? fmt::format("{} would need more samples", name_of(c.model))
-                    : fmt::format("{} may be off by {}", name_of(c.model), percent(c.predicted()));
+        return fmt::format("{} would be off by {}", name_of(c.model), io::percent(c.found()));
+    return c.inside
+               ? fmt::format("{} would need more samples", name_of(c.model))
+               : fmt::format("{} may be off by {}", name_of(c.model), io::percent(c.predicted()));
 }
 
 std::string at_most(double predicted) {
-    return fmt::format("off by {} at most", percent(predicted));
+    return fmt::format("off by {} at most", io::percent(predicted));
 }
 
 std::string dispersion_text(const std::string& lens, double px) {
@@ -142,7 +143,7 @@ PlanLine ghosts_line(const Plan& plan) {
                 {}};
     std::string why = fmt::format("surfaces reflect, with coating {}", name_of(asked.coating));
     if (share && asked.ghosts == GhostUse::Auto)
-        why += fmt::format(", about {} of the picture's light", percent(*share));
+        why += fmt::format(", about {} of the picture's light", io::percent(*share));
     if (lamps > 0) why += "; " + lamps_into_lens_text(lamps);
     return {"ghosts", name_of(asked.ghosts), why, {}};
 }
@@ -190,16 +191,16 @@ std::string text_of(const SmallLamps& small) {
 
 }  // namespace
 
-std::string text_of(const NoiseReport& reached, double asked) {
+std::string text_of(const integrator::NoiseReport& reached, double asked) {
     if (!std::isfinite(reached.noise))
         return fmt::format("noise: not known, as parts of the picture have fewer than {} samples",
-                           kLeastOfCell);
-    std::string out =
-        fmt::format("noise: {} in the picture, {} in its worst part, with {:.0f} samples a pixel",
-                    percent(reached.noise), percent(reached.worst_cell), reached.mean_samples);
+                           integrator::kLeastOfCell);
+    std::string out = fmt::format(
+        "noise: {} in the picture, {} in its worst part, with {:.0f} samples a pixel",
+        io::percent(reached.noise), io::percent(reached.worst_cell), reached.mean_samples);
     if (reached.left == 0) return out;
-    out +=
-        fmt::format("; {} of {} parts are above {}", reached.left, reached.cells, percent(asked));
+    out += fmt::format("; {} of {} parts are above {}", reached.left, reached.cells,
+                       io::percent(asked));
     if (reached.at_least > 0)
         out += fmt::format(", at least: in {} of them the noise hangs on a few paths",
                            reached.at_least);
@@ -276,7 +277,7 @@ RenderRequest carried_out(const Plan& plan, RenderRequest request) {
         }
         return request;
     }
-    if (plan.precision && plan.precision->precision == Precision::Double)
+    if (plan.precision && plan.precision->precision == camera::Precision::Double)
         camera.precision = plan.precision->precision;
     if (plan.anything_open)
         scene.spectral.mode =
@@ -306,4 +307,4 @@ std::optional<std::string> line_of(const AutoChoice& choice) {
     return fmt::format("dispersion: {}, as {}", name_of(*choice.dispersion), reason_of(choice));
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

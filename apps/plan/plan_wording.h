@@ -11,7 +11,7 @@
 #include "apps/request/option_names.h"
 #include "integrator/render/noise_target.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 template <>
 inline constexpr auto kOptionNames<PlanModel> =
@@ -26,7 +26,7 @@ inline constexpr auto kOptionNames<PlanModel> =
 /// Reason why the noise may be larger than a plan says; empty where it is known.
 [[nodiscard]] std::string rare_text(const Plan&);
 /// What a render has reached of a noise that was asked for.
-[[nodiscard]] std::string text_of(const NoiseReport&, double asked);
+[[nodiscard]] std::string text_of(const integrator::NoiseReport&, double asked);
 /// Warning of lamps that few paths of a render meet; none where there are none.
 [[nodiscard]] std::optional<std::string> warning_of(const SmallLamps&);
 /// Times the samples that the same noise would take without rays to targets; nothing where that is
@@ -49,4 +49,4 @@ struct PlanLine {
 /// The line that tells the dispersion mode with its reason; nothing where it was not open.
 [[nodiscard]] std::optional<std::string> line_of(const AutoChoice&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

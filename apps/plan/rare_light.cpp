@@ -7,7 +7,7 @@
 #include "core/spectrum/bands.h"
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr uint32_t kRaysToLamps = 256;
@@ -28,7 +28,7 @@ constexpr double kDecisive = 4;
 constexpr double kFilled = 0.1;
 
 /// Ray of a random film point in a region; nothing where the lens lets none through.
-std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const FilmRegion& region,
+std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const camera::FilmRegion& region,
                           uint32_t i) {
     const Sampler sampler(SamplerKind::Owen, 1, {0, 0, i});
     const V2f within = sampler.get2(Dim::Film);
@@ -41,7 +41,7 @@ std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const FilmRegio
     const Observer& observer = setup.view.observer;
     const Bands bands =
         observer.spectral() ? observer.draw(sampler.get1(Dim::Wavelength)) : Bands::rgb();
-    const CameraSample seen = setup.view.still->sample({film, sampler}, bands);
+    const camera::CameraSample seen = setup.view.still->sample({film, sampler}, bands);
     if (seen.empty()) return std::nullopt;
     return seen[0].ray;
 }
@@ -64,15 +64,15 @@ bool is_alone(const SmallFeature& lamp) {
 /// far apart, targets may hold some and not others: they do not count.
 double sent_to(const RenderSetup& setup, V2i size_px, std::array<int, 2> pixel,
                const SeenLamp& lamp) {
-    const TargetGrid* grid = setup.view.targets.get();
+    const camera::TargetGrid* grid = setup.view.targets.get();
     if (!grid || !lamp.alone) return 0;
     const V2f film((float(pixel[0]) + 0.5f) / float(size_px.x),
                    (float(pixel[1]) + 0.5f) / float(size_px.y));
-    const TargetCell& cell = grid->at(film);
-    const auto along = FilmOctagon::along(film);
+    const camera::TargetCell& cell = grid->at(film);
+    const auto along = camera::FilmOctagon::along(film);
     double sum = 0;
-    for (const ListedTarget& listed : cell.targets) {
-        const Target& target = grid->targets[listed.number];
+    for (const camera::ListedTarget& listed : cell.targets) {
+        const camera::Target& target = grid->targets[listed.number];
         if (!listed.seen_from.contains(along) || target.at_infinity != lamp.feature.at_infinity ||
             (target.centre - lamp.feature.centre).length() > lamp.feature.radius_m)
             continue;
@@ -99,7 +99,7 @@ bool is_hidden(const Bvh& bvh, const Ray& ray, const SmallFeature& lamp) {
 
 std::vector<SeenLamp> seen_lamps(const RenderSetup& setup, V2i size_px,
                                  const std::vector<SmallFeature>& features,
-                                 const std::vector<FilmRegion>& regions) {
+                                 const std::vector<camera::FilmRegion>& regions) {
     std::vector<SeenLamp> out;
     for (size_t n = 0; n < features.size(); ++n) {
         const SmallFeature& lamp = features[n];
@@ -142,7 +142,8 @@ std::vector<LampSamples> samples_of_lamps(const RenderSetup& setup, V2i size_px,
     std::vector<SmallFeature> features = features_of(setup);
     std::erase_if(features,
                   [&](const SmallFeature& f) { return !f.is_lamp() || f.radiance < nits; });
-    std::vector<FilmRegion> regions = film_regions(*setup.view.still, size_px, features);
+    std::vector<camera::FilmRegion> regions =
+        camera::film_regions(*setup.view.still, size_px, features);
     std::vector<LampSamples> out;
     for (const SeenLamp& lamp : seen_lamps(setup, size_px, features, regions)) {
         const int64_t pixels = std::min(kPixelsOfDisc, lamp.area_px);
@@ -224,9 +225,9 @@ RareLight rare_light(const Pilot& pilot, const PilotModel& model,
         const double with = behind + lamp.feature.radiance * lamp.probability;
         out.seldom.add(lamp);
         if (with > 0) out.noise += share * lamp.square() / (with * with + floor * floor);
-        out.lost += share * symmetric_square(behind, with, floor);
+        out.lost += share * io::symmetric_square(behind, with, floor);
     }
-    const auto seldom = [&](const ChanceFinds& found) {
+    const auto seldom = [&](const integrator::ChanceFinds& found) {
         return has_lamps && found.bounces > 0 && double(found.lamps) < kEnoughPaths;
     };
     out.mirrored = seldom(model.stats().mirrored);
@@ -235,4 +236,4 @@ RareLight rare_light(const Pilot& pilot, const PilotModel& model,
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 #include "camera/setup/film_region.h"
 #include "core/light/small_features.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Paths from which on noise counts as known.
 inline constexpr double kEnoughPaths = 16;
@@ -21,7 +21,7 @@ struct SeenLamp {
     double probability;  ///< that a camera ray of this area meets it
     bool alone;          ///< its light is even over the area: one lamp, not several far apart
     SmallFeature feature;
-    const FilmRegion* region;
+    const camera::FilmRegion* region;
 
     /// Variance of one sample that it adds where nothing else does, times the squared mean.
     [[nodiscard]] double square() const {
@@ -35,7 +35,7 @@ struct SeenLamp {
 /// Lamps among the things that no surface hides from the camera, each with its region.
 [[nodiscard]] std::vector<SeenLamp> seen_lamps(const RenderSetup&, V2i size_px,
                                                const std::vector<SmallFeature>&,
-                                               const std::vector<FilmRegion>&);
+                                               const std::vector<camera::FilmRegion>&);
 
 /// Least means of a pilot's pixels, as PilotScale wants them: where a lamp is met by less than one
 /// sample of a pilot pixel, the mean over all pilot pixels at its disc, or what the lamp is
@@ -47,7 +47,7 @@ struct SeenLamp {
 /// alone: those that it draws and those that it sends there.
 struct LampSamples {
     SeenLamp lamp;  ///< its region is the next member
-    FilmRegion region;
+    camera::FilmRegion region;
     double samples;
 };
 /// Lamps of at least so many nits that no surface hides from the camera.
@@ -87,4 +87,4 @@ struct RareLight {
 [[nodiscard]] RareLight rare_light(const Pilot&, const PilotModel&, const std::vector<SeenLamp>&,
                                    bool has_lamps, double floor);
 
-}  // namespace petzval
+}  // namespace petzval::apps

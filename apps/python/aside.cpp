@@ -10,7 +10,7 @@
 #include <mutex>
 #include <thread>
 
-namespace petzval {
+namespace petzval::apps {
 
 namespace py = pybind11;
 
@@ -58,4 +58,4 @@ void run_aside(const std::function<void()>& work, const std::function<void()>& t
     if (of_work) std::rethrow_exception(of_work);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

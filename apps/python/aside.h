@@ -4,7 +4,7 @@
 #include <functional>
 #include <stdexcept>
 
-namespace petzval {
+namespace petzval::apps {
 
 class ForkedError : public std::runtime_error {
   public:
@@ -22,4 +22,4 @@ void require_own_threads();
 void run_aside(const std::function<void()>& work, const std::function<void()>& tick,
                const std::function<void()>& stop);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,7 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Adds fields(), the table of those that Python takes, from which _fields.py is made, and
 /// check_fields().
@@ -16,4 +16,4 @@ void bind_session(pybind11::module_&);
 /// Adds the class Lens, the optics bench, and lens_names().
 void bind_lens(pybind11::module_&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

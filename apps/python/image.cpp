@@ -15,7 +15,7 @@
 #include "io/image/display.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace py = pybind11;
@@ -32,13 +32,13 @@ py::array read_only(const float* values, std::array<py::ssize_t, 3> shape,
 
 py::array values_of(const py::object& image) {
     const auto& self = image.cast<const RenderedImage&>();
-    const PictureLayout& layout = self.layout();
+    const io::PictureLayout& layout = self.layout();
     return read_only(self.values().data(),
                      {layout.height, layout.width, py::ssize_t(layout.channels.size())}, image);
 }
 
 py::array shown_of(const RenderedImage& self) {
-    auto shown = std::make_unique<Picture>();
+    auto shown = std::make_unique<io::Picture>();
     {
         const py::gil_scoped_release released;
         *shown = self.shown();
@@ -47,7 +47,7 @@ py::array shown_of(const RenderedImage& self) {
                                            py::ssize_t(shown->channels.size())};
     const float* const pixels = shown->pixels.data();
     return py::array_t<float>(shape, pixels, py::capsule(shown.release(), [](void* picture) {
-                                  delete static_cast<Picture*>(picture);
+                                  delete static_cast<io::Picture*>(picture);
                               }));
 }
 
@@ -71,14 +71,14 @@ std::optional<std::array<double, 2>> focal_px(const View& view, const CameraRepo
                                               V2i size) {
     constexpr float kAside = 0.01f;  // of the film
     if (camera.orthographic) return std::nullopt;
-    const Pose pose(camera.to_world);
+    const camera::Pose pose(camera.to_world);
     std::array<double, 2> out{};
     for (int axis = 0; axis < 2; ++axis) {
         double apart = 0;
         for (const float side : {kAside, -kAside}) {
             V2f film(0.5f);
             film[axis] += side;
-            const CameraSample seen =
+            const camera::CameraSample seen =
                 view.finder->sample({film, Sampler(SamplerKind::Owen, 0, {0, 0, 0})}, Bands::rgb());
             if (seen.empty()) return std::nullopt;
             const V3d along = pose.local(seen[0].ray.direction);
@@ -90,7 +90,7 @@ std::optional<std::array<double, 2>> focal_px(const View& view, const CameraRepo
 }
 
 py::tuple frame_of(const RenderedImage& self) {
-    const PictureLayout& layout = self.layout();
+    const io::PictureLayout& layout = self.layout();
     return py::make_tuple(layout.x, layout.y, layout.full_width, layout.full_height);
 }
 
@@ -100,20 +100,20 @@ RenderedImage::RenderedImage(const RenderSession& session, const SceneRequest& r
                              std::vector<std::string> notices)
     : display_(session.display()),
       camera_(session.setup().from.camera),
-      focal_px_(petzval::focal_px(session.setup().view, camera_, request.size)),
+      focal_px_(apps::focal_px(session.setup().view, camera_, request.size)),
       inputs_(input_files(request)),
       notices_(std::move(notices)) {
-    for (const NamedFile& file : session.setup().prepared.files) inputs_.push_back(file);
+    for (const io::NamedFile& file : session.setup().prepared.files) inputs_.push_back(file);
     for (size_t i = 0; i < kNames.size(); ++i) layouts_[i] = session.picture(kNames[i]).layout;
-    const PictureRows light = session.picture(kNames[0]);
+    const io::PictureRows light = session.picture(kNames[0]);
     const size_t row_size = size_t(light.layout.width) * light.layout.channels.size();
     values_.resize(row_size * size_t(light.layout.height));
     for (int y = 0; y < light.layout.height; ++y)
         light.row(y, values_.data() + row_size * size_t(y));
 }
 
-PictureRows RenderedImage::rows(PictureFormat format) const {
-    const PictureLayout& asked = layout_of(format);
+io::PictureRows RenderedImage::rows(io::PictureFormat format) const {
+    const io::PictureLayout& asked = layout_of(format);
     const size_t all = layout().channels.size();
     if (asked.channels.size() == all)
         return {asked, [this, row_size = all * size_t(asked.width)](int y, float* row) {
@@ -122,8 +122,8 @@ PictureRows RenderedImage::rows(PictureFormat format) const {
     // What is shown of a picture that was denoised has other colours than its light.
     std::vector<size_t> from;
     for (const std::string& channel : asked.channels) {
-        const int denoised = channel_index(layout(), "denoised." + channel);
-        from.push_back(size_t(denoised >= 0 ? denoised : channel_index(layout(), channel)));
+        const int denoised = io::channel_index(layout(), "denoised." + channel);
+        from.push_back(size_t(denoised >= 0 ? denoised : io::channel_index(layout(), channel)));
     }
     return {asked, [this, all, from, width = size_t(asked.width)](int y, float* row) {
                 const float* pixel = values_.data() + size_t(y) * width * all;
@@ -134,17 +134,18 @@ PictureRows RenderedImage::rows(PictureFormat format) const {
 
 void RenderedImage::save(const std::filesystem::path& file) const {
     require_own_threads();
-    const PictureFormat format = picture_format(file);
-    refuse_overwriting({{"path", file}}, inputs_);
-    refuse_overwriting({{"path", file}}, own_files());
-    write_output(file, rows(format), display_);
+    const io::PictureFormat format = io::picture_format(file);
+    io::refuse_overwriting({{"path", file}}, inputs_);
+    io::refuse_overwriting({{"path", file}}, own_files());
+    io::write_output(file, rows(format), display_);
 }
 
-Picture RenderedImage::shown() const {
-    const PictureRows shown = to_display(rows(PictureFormat::Png), display_.exposure_ev,
-                                         display_.view, AlphaUse::Keep, display_.config);
-    Picture out;
-    static_cast<PictureLayout&>(out) = shown.layout;
+io::Picture RenderedImage::shown() const {
+    const io::PictureRows shown =
+        io::to_display(rows(io::PictureFormat::Png), display_.exposure_ev, display_.view,
+                       io::AlphaUse::Keep, display_.config);
+    io::Picture out;
+    static_cast<io::PictureLayout&>(out) = shown.layout;
     const size_t row_size = size_t(out.width) * out.channels.size();
     out.pixels.resize(row_size * size_t(out.height));
     for (int y = 0; y < out.height; ++y) shown.row(y, out.pixels.data() + row_size * size_t(y));
@@ -170,14 +171,14 @@ void bind_image(py::module_& module) {
         });
     module.def("write_exr", [](const std::string& path, const py::array_t<float>& pixels) {
         require_own_threads();
-        Picture picture;
+        io::Picture picture;
         picture.width = picture.full_width = int(pixels.shape(1));
         picture.height = picture.full_height = int(pixels.shape(0));
         picture.channels = {"R", "G", "B"};
         picture.pixels.assign(pixels.data(), pixels.data() + pixels.size());
         const py::gil_scoped_release released;
-        write_exr(path, picture);
+        io::write_exr(path, picture);
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

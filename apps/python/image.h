@@ -13,7 +13,7 @@
 #include "io/picture/picture.h"
 #include "io/picture/picture_kind.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Picture of a finished render with all that its files say, apart from the session that made it.
 class RenderedImage {
@@ -22,7 +22,9 @@ class RenderedImage {
     RenderedImage(const RenderSession&, const SceneRequest&, std::vector<std::string> notices);
 
     /// Layout of the EXR, whose channels the values have, and the values, row by row.
-    [[nodiscard]] const PictureLayout& layout() const { return layout_of(PictureFormat::Exr); }
+    [[nodiscard]] const io::PictureLayout& layout() const {
+        return layout_of(io::PictureFormat::Exr);
+    }
     [[nodiscard]] const std::vector<float>& values() const { return values_; }
     [[nodiscard]] const CameraReport& camera() const { return camera_; }
     /// Focal lengths in pixels, across and upright, at the focus that is set; nothing where the
@@ -34,21 +36,21 @@ class RenderedImage {
     /// destroy an input.
     void save(const std::filesystem::path&) const;
     /// R, G, B, A as a display shows them, in [0, 1] but for what the view lets out of it.
-    [[nodiscard]] Picture shown() const;
+    [[nodiscard]] io::Picture shown() const;
 
   private:
-    [[nodiscard]] const PictureLayout& layout_of(PictureFormat format) const {
+    [[nodiscard]] const io::PictureLayout& layout_of(io::PictureFormat format) const {
         return layouts_[static_cast<size_t>(format)];
     }
-    [[nodiscard]] PictureRows rows(PictureFormat) const;
+    [[nodiscard]] io::PictureRows rows(io::PictureFormat) const;
 
-    std::array<PictureLayout, 3> layouts_;  ///< by format: each file says other things
+    std::array<io::PictureLayout, 3> layouts_;  ///< by format: each file says other things
     std::vector<float> values_;
-    DisplayOptions display_;
+    io::DisplayOptions display_;
     CameraReport camera_;
     std::optional<std::array<double, 2>> focal_px_;
-    std::vector<NamedFile> inputs_;
+    std::vector<io::NamedFile> inputs_;
     std::vector<std::string> notices_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -13,7 +13,7 @@
 #include "apps/request/value_error.h"
 #include "io/base/nearest.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace py = pybind11;
@@ -79,7 +79,7 @@ RenderOrder order_of(const Keywords& keywords) {
         if (field == fields.end()) {
             std::vector<std::string> known;
             for (const RequestField& one : fields) known.push_back(keyword_of(one.name));
-            throw ValueError(keyword, "is no field" + did_you_mean(keyword, known));
+            throw ValueError(keyword, "is no field" + io::did_you_mean(keyword, known));
         }
         field->set(order, text);
     }
@@ -104,4 +104,4 @@ void bind_fields(py::module_& module) {
     module.def("check_fields", [](const Keywords& keywords) { (void)order_of(keywords); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

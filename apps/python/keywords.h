@@ -8,7 +8,7 @@
 
 #include "apps/request/render_order.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Keywords with their texts, in the order in which they are set.
 using Keywords = std::vector<std::pair<std::string, std::string>>;
@@ -22,4 +22,4 @@ using Keywords = std::vector<std::pair<std::string, std::string>>;
 /// Message as Python spells it: ⟨focal-length⟩, a field's name, reads focal_length.
 [[nodiscard]] std::string as_keywords(const std::string& message);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -17,7 +17,7 @@
 #include "camera/setup/lens_bench.h"
 #include "io/lens/lens_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace py = pybind11;
@@ -40,7 +40,8 @@ std::span<V3d> rows_of(Array& a) {
     return {reinterpret_cast<V3d*>(a.mutable_data()), size_t(a.shape(0))};
 }
 
-Array array_of_pairs(const std::vector<BundleRay>& rays, std::array<double, 2> BundleRay::*member) {
+Array array_of_pairs(const std::vector<camera::BundleRay>& rays,
+                     std::array<double, 2> camera::BundleRay::*member) {
     Array out({py::ssize_t(rays.size()), py::ssize_t(2)});
     for (size_t i = 0; i < rays.size(); ++i)
         for (size_t k = 0; k < 2; ++k) out.mutable_at(i, k) = (rays[i].*member)[k];
@@ -53,12 +54,12 @@ class BenchLens {
     BenchLens(const std::string& name, const std::vector<std::string>& glasses)
         : BenchLens(read(name, glasses)) {}
 
-    [[nodiscard]] const Lens& lens() const { return *bench.lens; }
-    [[nodiscard]] const Prescription& file() const { return lens().prescription(); }
+    [[nodiscard]] const camera::Lens& lens() const { return *bench.lens; }
+    [[nodiscard]] const camera::Prescription& file() const { return lens().prescription(); }
 
     [[nodiscard]] BenchLens focused(double distance, bool traced) const {
-        auto sharp =
-            LensBench::focused(lens(), distance, traced ? FocusBy::Traced : FocusBy::Paraxial);
+        auto sharp = camera::LensBench::focused(
+            lens(), distance, traced ? camera::FocusBy::Traced : camera::FocusBy::Paraxial);
         if (!sharp)
             throw ValueError("distance_m",
                              fmt::format("{} cannot be focused at {:g} mm; give a greater distance",
@@ -70,32 +71,33 @@ class BenchLens {
         if (!shift) throw dark(0);
         return *shift;
     }
-    [[nodiscard]] std::vector<BundleRay> rays(double field_deg, double nm, int side,
-                                              bool to_x) const {
+    [[nodiscard]] std::vector<camera::BundleRay> rays(double field_deg, double nm, int side,
+                                                      bool to_x) const {
         if (!(std::fabs(field_deg) < 90))
             throw ValueError("field_deg", fmt::format("{} is not between -90 and 90", field_deg));
-        const auto bundle = bench.aim(field_deg, nm, to_x ? Section::X : Section::Y);
+        const auto bundle =
+            bench.aim(field_deg, nm, to_x ? camera::Section::X : camera::Section::Y);
         if (!bundle) throw dark(field_deg);
         auto found = bundle->trace(bundle->grid(side), bench.film_mm);
         if (found.empty()) throw dark(field_deg);
         return found;
     }
     [[nodiscard]] std::vector<double> irradiance(const std::vector<double>& heights_mm) const {
-        return film_irradiance(bench.lens, bench.film_mm, heights_mm);
+        return camera::film_irradiance(bench.lens, bench.film_mm, heights_mm);
     }
 
-    LensBench bench;
+    camera::LensBench bench;
     std::vector<std::string> warnings;
 
   private:
-    BenchLens(LensBench of, std::vector<std::string> told)
+    BenchLens(camera::LensBench of, std::vector<std::string> told)
         : bench(std::move(of)), warnings(std::move(told)) {}
     [[nodiscard]] static BenchLens read(const std::string& name,
                                         const std::vector<std::string>& glasses) {
-        std::vector<AgfCatalog> catalogs;
+        std::vector<io::AgfCatalog> catalogs;
         for (const std::string& file : glasses) catalogs.emplace_back(file);
-        LensFile file = load_lens(name, catalogs);
-        return {LensBench(std::make_shared<const Lens>(std::move(file.lens))),
+        io::LensFile file = io::load_lens(name, catalogs);
+        return {camera::LensBench(std::make_shared<const camera::Lens>(std::move(file.lens))),
                 std::move(file.warnings)};
     }
     [[nodiscard]] ValueError dark(double field_deg) const {
@@ -120,29 +122,31 @@ py::tuple trace(const BenchLens& self, const Array& origins, const Array& direct
     const auto count = py::ssize_t(from.size());
     Array points({count, py::ssize_t(3)}), directions_out({count, py::ssize_t(3)}), paths(count);
     py::array_t<int> status(count), ends(count);
-    const RaysOut out{rows_of(points),
-                      rows_of(directions_out),
-                      {paths.mutable_data(), from.size()},
-                      {reinterpret_cast<RayStatus*>(status.mutable_data()), from.size()},
-                      {ends.mutable_data(), from.size()}};
+    const camera::RaysOut out{
+        rows_of(points),
+        rows_of(directions_out),
+        {paths.mutable_data(), from.size()},
+        {reinterpret_cast<camera::RayStatus*>(status.mutable_data()), from.size()},
+        {ends.mutable_data(), from.size()}};
     {
         const py::gil_scoped_release released;
-        trace_rays(self.lens(), {from, along, waves}, to_scene ? Towards::Scene : Towards::Film,
-                   clip ? Clip::Yes : Clip::No, out);
+        camera::trace_rays(self.lens(), {from, along, waves},
+                           to_scene ? camera::Towards::Scene : camera::Towards::Film,
+                           clip ? camera::Clip::Yes : camera::Clip::No, out);
     }
     return py::make_tuple(points, directions_out, paths, status, ends);
 }
 
 py::tuple spot(const BenchLens& self, double field_deg, double nm, int side, bool to_x) {
-    std::vector<BundleRay> rays;
+    std::vector<camera::BundleRay> rays;
     {
         const py::gil_scoped_release released;
         rays = self.rays(field_deg, nm, side, to_x);
     }
-    const SpotSize size = spot_size(rays);
-    return py::make_tuple(array_of_pairs(rays, &BundleRay::film_mm),
-                          array_of_pairs(rays, &BundleRay::pupil_point), size.centroid_mm,
-                          size.rms_mm, best_shift_mm(rays));
+    const camera::SpotSize size = camera::spot_size(rays);
+    return py::make_tuple(array_of_pairs(rays, &camera::BundleRay::film_mm),
+                          array_of_pairs(rays, &camera::BundleRay::pupil_point), size.centroid_mm,
+                          size.rms_mm, camera::best_shift_mm(rays));
 }
 
 // Contrast along the field and across it, at each frequency.
@@ -151,13 +155,13 @@ py::tuple mtf(const BenchLens& self, const std::vector<double>& cycles_per_mm, d
     std::vector<double> tangential, sagittal;
     {
         const py::gil_scoped_release released;
-        std::vector<BundleRay> rays;
+        std::vector<camera::BundleRay> rays;
         for (const double wave : nm)
-            for (const BundleRay& ray : self.rays(field_deg, wave, side, false))
+            for (const camera::BundleRay& ray : self.rays(field_deg, wave, side, false))
                 rays.push_back(ray);
         for (const double cycles : cycles_per_mm) {
-            tangential.push_back(geometric_mtf(rays, cycles, Section::Y));
-            sagittal.push_back(geometric_mtf(rays, cycles, Section::X));
+            tangential.push_back(camera::geometric_mtf(rays, cycles, camera::Section::Y));
+            sagittal.push_back(camera::geometric_mtf(rays, cycles, camera::Section::X));
         }
     }
     return py::make_tuple(tangential, sagittal);
@@ -170,7 +174,7 @@ py::tuple heights(const BenchLens& self, const std::vector<double>& fields_deg) 
         if (!(field_deg > 0 && field_deg < 90))
             throw ValueError("fields_deg", fmt::format("{} is not between 0 and 90", field_deg));
         const auto found =
-            distortion(self.lens(), field_deg, self.bench.film_mm, self.bench.distance_mm);
+            camera::distortion(self.lens(), field_deg, self.bench.film_mm, self.bench.distance_mm);
         real.push_back(found ? found->height_mm : std::nan(""));
         ideal.push_back(found ? found->ideal_height_mm : std::nan(""));
     }
@@ -179,7 +183,7 @@ py::tuple heights(const BenchLens& self, const std::vector<double>& fields_deg) 
 
 py::list surfaces(const BenchLens& self) {
     py::list all;
-    for (const LensSurface& s : self.file().surfaces) {
+    for (const camera::LensSurface& s : self.file().surfaces) {
         py::dict one;
         one["radius_mm"] =
             s.curvature_1_mm == 0 ? std::numeric_limits<double>::infinity() : 1 / s.curvature_1_mm;
@@ -195,8 +199,8 @@ py::list surfaces(const BenchLens& self) {
 }
 
 py::dict facts(const BenchLens& self, double nm) {
-    const Prescription& file = self.file();
-    const FirstOrder first = first_order(self.lens(), nm);
+    const camera::Prescription& file = self.file();
+    const camera::FirstOrder first = camera::first_order(self.lens(), nm);
     const double stop_mm = file.surfaces[size_t(self.lens().stop())].semi_diameter_mm;
     py::dict out;
     out["name"] = file.name;
@@ -204,8 +208,8 @@ py::dict facts(const BenchLens& self, double nm) {
     out["source"] = file.source;
     out["image_circle_mm"] =
         file.image_circle_mm > 0 ? py::object(py::float_(file.image_circle_mm)) : py::none();
-    out["half_field_deg"] = field_half_deg(file);
-    out["fnumber"] = fnumber_of(self.lens(), stop_mm);
+    out["half_field_deg"] = camera::field_half_deg(file);
+    out["fnumber"] = camera::fnumber_of(self.lens(), stop_mm);
     out["film_mm"] = self.bench.film_mm;
     out["focal_length_mm"] = first.focal_length_mm;
     out["back_focus_mm"] = first.back_focus_mm;
@@ -240,15 +244,15 @@ void bind_lens(py::module_& module) {
     module.attr("LINE_F_NM") = kLineF_nm;
     module.attr("LINE_D_NM") = kLineD_nm;
     module.attr("LINE_C_NM") = kLineC_nm;
-    module.attr("PASSED") = int(RayStatus::Passed);
-    module.attr("VIGNETTED") = int(RayStatus::Vignetted);
-    module.attr("TOTALLY_REFLECTED") = int(RayStatus::TotallyReflected);
-    module.attr("MISSED") = int(RayStatus::Missed);
+    module.attr("PASSED") = int(camera::RayStatus::Passed);
+    module.attr("VIGNETTED") = int(camera::RayStatus::Vignetted);
+    module.attr("TOTALLY_REFLECTED") = int(camera::RayStatus::TotallyReflected);
+    module.attr("MISSED") = int(camera::RayStatus::Missed);
     module.def("lens_names", [] {
         std::vector<std::string> names;
-        for (const LensSummary& lens : list_lenses()) names.push_back(lens.name);
+        for (const io::LensSummary& lens : io::list_lenses()) names.push_back(lens.name);
         return names;
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -16,7 +16,8 @@
 namespace {
 
 namespace py = pybind11;
-using namespace petzval;
+using namespace petzval::apps;
+namespace io = petzval::io;
 
 // Raises one of the exceptions of petzval/_errors.py. A file's name need not be UTF-8.
 void raise(const char* name, const std::string& message, const std::string& field = "") {
@@ -33,9 +34,9 @@ void translate(const std::exception_ptr& thrown) {
         std::rethrow_exception(thrown);
     } catch (const ValueError& error) {
         raise("FieldError", error.what(), as_keywords(error.option()));
-    } catch (const OutputError& error) {
+    } catch (const io::OutputError& error) {
         raise("OutputError", error.what());
-    } catch (const InputError& error) {
+    } catch (const io::InputError& error) {
         raise("InputError", error.what());
     } catch (const ForkedError& error) {
         raise("Error", error.what());

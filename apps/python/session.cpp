@@ -23,7 +23,7 @@
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace py = pybind11;
@@ -71,7 +71,7 @@ class PythonSession {
         const OnlyOne only(busy_);
         refuse_when_closing();
         RenderRequest request = order_of(keywords).render;
-        RenderMonitor monitor;
+        integrator::RenderMonitor monitor;
         std::atomic<Phase> phase = Phase::Loading;
         std::atomic<uint64_t> before = 0;  // samples that the film has
         std::shared_ptr<RenderedImage> image;
@@ -113,7 +113,7 @@ class PythonSession {
         if (closing_) throw ValueError("scene", "is closed, as Python ends");
     }
     [[nodiscard]] static uint64_t expected(const RenderRequest& request,
-                                           const RenderMonitor& monitor) {
+                                           const integrator::RenderMonitor& monitor) {
         if (const uint64_t known = monitor.expected_pixel_samples) return known;
         const SampleRequest& samples = request.samples;
         if (samples.noise || samples.time_limit_s) return 0;
@@ -137,7 +137,7 @@ py::tuple plan_of(const Keywords& keywords, int threads) {
         [&] {
             check(order.render);
             flush_denormals();
-            TbbExecutor executor(threads_or_all(threads));
+            integrator::TbbExecutor executor(threads_or_all(threads));
             const RenderRequest& request = order.render;
             const Plan plan = make_plan(
                 {resolved_scene(request), job_of(request), request.path, request.tolerance},
@@ -156,13 +156,13 @@ void make_chart(const Keywords& keywords, int threads, const std::string& folder
                 const std::vector<std::string>& axes, const std::string& budget, uint32_t seeds) {
     require_own_threads();
     const RenderOrder order = order_of(keywords);
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     run_aside(
         [&] {
             flush_denormals();
-            TbbExecutor executor(threads_or_all(threads));
-            load_image_codec();
-            limit_picture_threads(executor.threads());
+            integrator::TbbExecutor executor(threads_or_all(threads));
+            io::load_image_codec();
+            io::limit_picture_threads(executor.threads());
             ChartRequest request;
             request.axes = parse_axes("axes", axes);
             request.budget_s = parse_duration_s("budget", budget);
@@ -190,4 +190,4 @@ void bind_session(py::module_& module) {
     module.def("chart", make_chart);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

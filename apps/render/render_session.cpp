@@ -24,7 +24,7 @@
 #include "io/image/display.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Files that a request names, but for pictures and the scene, which are hashed as they are read.
@@ -32,10 +32,10 @@ std::vector<std::pair<std::filesystem::path, std::string>> hashes_of_inputs(
     const SceneRequest& scene) {
     std::vector<std::pair<std::filesystem::path, std::string>> out;
     std::error_code none;
-    for (const NamedFile& file : input_files(scene))
+    for (const io::NamedFile& file : input_files(scene))
         if (file.path != scene.scene && file.path != scene.environment &&
             std::filesystem::is_regular_file(file.path, none))
-            out.emplace_back(file.path, name_and_hash(file.path));
+            out.emplace_back(file.path, io::name_and_hash(file.path));
     return out;
 }
 
@@ -49,20 +49,20 @@ bool same_but_for_time(SceneRequest a, const SceneRequest& b) {
 }
 
 // Makes the choices that are open, tells them, and keeps them for the metadata.
-RenderSetup set_up(const PlanRequest& request, TbbExecutor& executor, const Notice& notice,
-                   const PhaseSink& begins) {
+RenderSetup set_up(const PlanRequest& request, integrator::TbbExecutor& executor,
+                   const io::Notice& notice, const PhaseSink& begins) {
     AutoSetup found = set_up_planned(request, executor, notice, begins);
     for (const std::string& line : lines_of(found.setup.from.spectral)) notice(line);
     if (const auto line = line_of(found.choice)) notice(*line);
     if (const std::string reason = reason_of(found.choice); !reason.empty())
         found.setup.from.metadata.emplace_back(
-            "petzval:plan", fmt::format("{}: {}", percent(request.tolerance), reason));
+            "petzval:plan", fmt::format("{}: {}", io::percent(request.tolerance), reason));
     return std::move(found.setup);
 }
 
 }  // namespace
 
-FilmShape shape_of(const RenderRequest& request) {
+io::FilmShape shape_of(const RenderRequest& request) {
     const V2i size = request.scene.size;
     return {size,
             pixels_of(request.crop, size),
@@ -72,7 +72,7 @@ FilmShape shape_of(const RenderRequest& request) {
 }
 
 RenderSession::RenderSession(int threads, Frames frames) : executor_(threads) {
-    limit_picture_threads(threads);
+    io::limit_picture_threads(threads);
     if (frames == Frames::Sequence) frames_.emplace();
 }
 
@@ -82,7 +82,7 @@ void RenderSession::take(LoadedScene scene) {
     setup_.from.asked = std::move(scene.asked);
 }
 
-void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
+void RenderSession::prepare(const RenderRequest& asked, const io::Notice& notice,
                             const PhaseSink& begins) {
     const LoadedScene loaded = frames_ ? LoadedScene() : scene();
     if (begins) executor_.before_task([&] { begins(Phase::Planning); });  // pilots are part of it
@@ -97,19 +97,19 @@ void RenderSession::prepare(const RenderRequest& asked, const Notice& notice,
 }
 
 void RenderSession::prepare_like(RenderSetup before, const RenderRequest& asked,
-                                 const Notice& notice, const PhaseSink& begins) {
+                                 const io::Notice& notice, const PhaseSink& begins) {
     flush_denormals();
     next_.reset();
     denoised_.reset();
     std::optional<Film> film = std::exchange(film_, std::nullopt);
     const RenderFacts facts = std::exchange(facts_, {});
-    const FilmShape shape = std::exchange(shape_, {});
+    const io::FilmShape shape = std::exchange(shape_, {});
     check(asked);
     shape_ = shape_of(asked);
     const uint64_t there_bytes =
-        std::min(usable_memory_bytes(), asked.scene.picture_memory_bytes.value_or(UINT64_MAX));
+        std::min(io::usable_memory_bytes(), asked.scene.picture_memory_bytes.value_or(UINT64_MAX));
     if (const auto shortage = memory_shortage(double(shape_.bytes()), there_bytes))
-        throw OutOfMemory("⟨size⟩: " + *shortage);
+        throw io::OutOfMemory("⟨size⟩: " + *shortage);
     SceneRequest scene = resolved_scene(asked);
     const auto inputs = hashes_of_inputs(scene);
     const uint32_t first = job_.first_sample;
@@ -125,7 +125,7 @@ void RenderSession::prepare_like(RenderSetup before, const RenderRequest& asked,
                     executor_, notice, begins);
     path_.visible_background = setup_.view.visible_background;
     job_.observer = setup_.view.observer;
-    load_image_codec();  // before hours of work: a picture will be written
+    io::load_image_codec();  // before hours of work: a picture will be written
     choose_display(notice);
     warn_of_lamps(notice);
     if (std::ranges::find(asked.layers, Aov::Velocity) != asked.layers.end()) {
@@ -139,8 +139,8 @@ void RenderSession::prepare_like(RenderSetup before, const RenderRequest& asked,
             noise_target(setup_, job_, path_, scene_.size, *asked.samples.noise, executor_);
     facts_ = facts_of(setup_, job_, path_, display_);
     for (const auto& [file, hash] : inputs)
-        if (name_and_hash(file) != hash)
-            throw InputError(file.string(), "", "was changed while it was read; start again");
+        if (io::name_and_hash(file) != hash)
+            throw io::InputError(file.string(), "", "was changed while it was read; start again");
     const uint32_t asked_samples = job_.end_sample - job_.first_sample;
     if (film && first == job_.first_sample && film->taken_range().most <= asked_samples &&
         light_hash(facts, shape, {0, 0}) == light_hash(facts_, shape_, {0, 0}))
@@ -150,7 +150,7 @@ void RenderSession::prepare_like(RenderSetup before, const RenderRequest& asked,
 }
 
 // What a path adds to a pixel counts from a tenth of what the display shows as white.
-void RenderSession::warn_of_lamps(const Notice& notice) const {
+void RenderSession::warn_of_lamps(const io::Notice& notice) const {
     constexpr double kSeen = 0.1;
     if (job_.end_sample == kMostSamples)
         return;  // a time limit: nobody knows how many there will be
@@ -161,9 +161,9 @@ void RenderSession::warn_of_lamps(const Notice& notice) const {
 }
 
 // Settles exposure and view: as asked, as the scene's file asks, or as a pilot finds; and tells it.
-void RenderSession::choose_display(const Notice& notice) {
+void RenderSession::choose_display(const io::Notice& notice) {
     const DisplayRequest& asked = request_.display;
-    const SceneExtras& file = setup_.prepared.extras;
+    const io::SceneExtras& file = setup_.prepared.extras;
     display_ = {asked.exposure ? asked.exposure->ev : file.exposure_ev.value_or(0.f), asked.view,
                 asked.config};
     std::string taken;
@@ -171,14 +171,14 @@ void RenderSession::choose_display(const Notice& notice) {
         taken = fmt::format("exposure {} EV", *file.exposure_ev);
     if (file.view && asked.view.empty()) {
         try {
-            display_.view = find_view(*file.view, asked.config);
-        } catch (const InputError& error) {
-            throw InputError(scene_.scene.string(), file.path + "/view",
-                             fmt::format("{}; ⟨view⟩ takes another", error.what()));
+            display_.view = io::find_view(*file.view, asked.config);
+        } catch (const io::InputError& error) {
+            throw io::InputError(scene_.scene.string(), file.path + "/view",
+                                 fmt::format("{}; ⟨view⟩ takes another", error.what()));
         }
-        taken += (taken.empty() ? "view " : ", view ") + printable(*file.view);
+        taken += (taken.empty() ? "view " : ", view ") + io::printable(*file.view);
     } else {
-        display_.view = find_view(asked.view, asked.config);
+        display_.view = io::find_view(asked.view, asked.config);
     }
     if (!taken.empty())
         notice(fmt::format("the scene asks for {} (⟨exposure⟩ and ⟨view⟩ go before it)", taken));
@@ -193,22 +193,24 @@ void RenderSession::choose_display(const Notice& notice) {
     setup_.from.exposure_is_auto = finds;
 }
 
-RenderResult RenderSession::render(RenderMonitor& monitor, const RenderRun& run) {
+integrator::RenderResult RenderSession::render(integrator::RenderMonitor& monitor,
+                                               const RenderRun& run) {
     flush_denormals();
     const PreparedScene& prepared = setup_.prepared;
-    const PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, path_);
-    RenderJob job = job_;
+    const integrator::PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, path_);
+    integrator::RenderJob job = job_;
     if (job.time_limit_s) *job.time_limit_s -= run.spent_s;
     job.at_pause = run.at_pause;
     job.timing = run.timing;
-    const Camera& camera = *setup_.view.camera;
+    const camera::Camera& camera = *setup_.view.camera;
     denoised_.reset();
-    if (job.noise) return render_to_noise(tracer, camera, job, *film_, executor_, monitor);
-    const auto all = [&](const RenderJob& part) {
-        return petzval::render(tracer, camera, part, *film_, executor_, monitor);
+    if (job.noise)
+        return integrator::render_to_noise(tracer, camera, job, *film_, executor_, monitor);
+    const auto all = [&](const integrator::RenderJob& part) {
+        return integrator::render(tracer, camera, part, *film_, executor_, monitor);
     };
     if (job.denoised_error) return render_to_denoised(job, all, monitor);
-    RenderResult result = all(job);
+    integrator::RenderResult result = all(job);
     if (film_->keeps().halves && !result.stopped) {
         if (run.begins) run.begins(Phase::Denoising);
         denoised_ = denoised_film(*film_, executor_, monitor.stop);
@@ -219,26 +221,27 @@ RenderResult RenderSession::render(RenderMonitor& monitor, const RenderRun& run)
 
 // The counts of samples are 16, 24, 32, 48 and so on, so that a stop and its resumption, and other
 // times, end where one run ends.
-RenderResult RenderSession::render_to_denoised(
-    RenderJob job, const std::function<RenderResult(const RenderJob&)>& render_all,
-    RenderMonitor& monitor) {
+integrator::RenderResult RenderSession::render_to_denoised(
+    integrator::RenderJob job,
+    const std::function<integrator::RenderResult(const integrator::RenderJob&)>& render_all,
+    integrator::RenderMonitor& monitor) {
     const double start_s = job.wall_s(), target = *job.denoised_error;
     const std::optional<double> limit_s = job.time_limit_s;
     const uint32_t most = job.end_sample;
     const auto at_pause = job.at_pause;
-    RenderResult all;
+    integrator::RenderResult all;
     if (at_pause)
-        job.at_pause = [&](const PathStats& stats) {
-            PathStats sum = all.stats;
+        job.at_pause = [&](const integrator::PathStats& stats) {
+            integrator::PathStats sum = all.stats;
             sum += stats;
             at_pause(sum);
         };
     for (uint32_t taken = film_->taken_range().most;;) {
-        uint32_t next = kLeastOfCell;
+        uint32_t next = integrator::kLeastOfCell;
         while (next < taken) next += std::bit_floor(next) / 2;
         job.end_sample = std::min(next, most);
         if (limit_s) job.time_limit_s = *limit_s - (job.wall_s() - start_s);
-        const RenderResult part = render_all(job);
+        const integrator::RenderResult part = render_all(job);
         all.stats += part.stats;
         all.workers = std::max(all.workers, part.workers);
         all.end_sample = part.end_sample;
@@ -260,8 +263,8 @@ RenderResult RenderSession::render_to_denoised(
     }
 }
 
-Picture RenderSession::look(const RenderMonitor& monitor) {
-    Picture out = colours_of(*film_, 4);
+io::Picture RenderSession::look(const integrator::RenderMonitor& monitor) {
+    io::Picture out = colours_of(*film_, 4);
     if (!film_->keeps().halves) return out;
     const auto denoised = denoised_ ? denoised_ : denoised_film(*film_, executor_, monitor.stop);
     for (size_t i = 0; denoised && i < denoised->picture.colour.size(); ++i)
@@ -270,14 +273,14 @@ Picture RenderSession::look(const RenderMonitor& monitor) {
     return out;
 }
 
-std::optional<NoiseReport> RenderSession::noise(const Film& film) const {
+std::optional<integrator::NoiseReport> RenderSession::noise(const Film& film) const {
     return reached_noise(facts_, film, {job_.first_sample, job_.end_sample});
 }
 
-SampleRecord RenderSession::trace_sample(SampleId id) const {
+integrator::SampleRecord RenderSession::trace_sample(SampleId id) const {
     const PreparedScene& prepared = setup_.prepared;
-    return SampleRecord::of(*prepared.scene, *prepared.bvh, *prepared.lights, path_,
-                            *setup_.view.camera, job_, scene_.size, id);
+    return integrator::SampleRecord::of(*prepared.scene, *prepared.bvh, *prepared.lights, path_,
+                                        *setup_.view.camera, job_, scene_.size, id);
 }
 
 // Samples that every pixel has.
@@ -287,27 +290,27 @@ SampleRange RenderSession::complete() const {
     return {first, first + film_->taken_range().least};
 }
 
-PictureRows RenderSession::light() const {
+io::PictureRows RenderSession::light() const {
     return develop(*film_, complete(), facts_.metadata, denoised_);
 }
 
-PictureRows RenderSession::shown() const {
-    const DisplayOptions& d = display_;
-    const PictureRows rows =
+io::PictureRows RenderSession::shown() const {
+    const io::DisplayOptions& d = display_;
+    const io::PictureRows rows =
         denoised_ ? denoised_colours(*film_, complete(), {}, denoised_) : light();
-    return to_display(rows, d.exposure_ev, d.view, AlphaUse::Keep, d.config);
+    return io::to_display(rows, d.exposure_ev, d.view, io::AlphaUse::Keep, d.config);
 }
 
-PictureRows RenderSession::picture(const std::filesystem::path& file) const {
+io::PictureRows RenderSession::picture(const std::filesystem::path& file) const {
     return picture_for(file, {*film_, complete(), facts_, noise(*film_), denoised_});
 }
 
 void RenderSession::write(const std::filesystem::path& file) const {
-    write_output(file, picture(file), display_);
+    io::write_output(file, picture(file), display_);
 }
 
 FoundExposure RenderSession::find_exposure() {
-    return petzval::find_exposure(setup_, job_, path_, executor_);
+    return apps::find_exposure(setup_, job_, path_, executor_);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -20,15 +20,15 @@
 #include "io/image/output.h"
 #include "io/state/state_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// What the film of a request keeps.
-[[nodiscard]] FilmShape shape_of(const RenderRequest&);
+[[nodiscard]] io::FilmShape shape_of(const RenderRequest&);
 
 /// How a render runs; nothing of it changes a sample.
 struct RenderRun {
     /// As in RenderJob; the film and the picture may be looked at there.
-    std::function<void(const PathStats&)> at_pause{};
+    std::function<void(const integrator::PathStats&)> at_pause{};
     double spent_s = 0;   ///< of a time limit, by runs before
     bool timing = false;  ///< measure where the time goes
     PhaseSink begins{};   ///< gets the phases that begin
@@ -66,7 +66,7 @@ class RenderSession {
     /// Loads what a request needs, and chooses what it leaves open. `notice` gets a line for each
     /// choice and oddity, `begins` the phases. Throws InputError; ArgumentError where the request
     /// does not fit its scene.
-    void prepare(const RenderRequest&, const Notice& notice, const PhaseSink& begins = {});
+    void prepare(const RenderRequest&, const io::Notice& notice, const PhaseSink& begins = {});
 
     /// Takes a scene that another session has loaded: a request for the same one shares it.
     void take(LoadedScene);
@@ -76,8 +76,8 @@ class RenderSession {
     /// The scene with all choices made. After prepare(), as the functions below.
     [[nodiscard]] const RenderSetup& setup() const { return setup_; }
     /// How PNG and JPEG show the picture.
-    [[nodiscard]] const DisplayOptions& display() const { return display_; }
-    [[nodiscard]] const FilmShape& shape() const { return shape_; }
+    [[nodiscard]] const io::DisplayOptions& display() const { return display_; }
+    [[nodiscard]] const io::FilmShape& shape() const { return shape_; }
     /// Facts that the picture follows from.
     [[nodiscard]] const RenderFacts& facts() const { return facts_; }
 
@@ -88,27 +88,27 @@ class RenderSession {
 
     /// Renders the samples that the film lacks, and denoises them where that is asked for. Ends
     /// early where the monitor says stop; calling again goes on.
-    RenderResult render(RenderMonitor&, const RenderRun& = {});
+    integrator::RenderResult render(integrator::RenderMonitor&, const RenderRun& = {});
 
     /// The denoised picture of all samples; empty where none is asked for, or render() was stopped.
     [[nodiscard]] const std::shared_ptr<const DenoisedFilm>& denoised() const { return denoised_; }
     /// The picture so far as it would be shown, R, G, B and A, denoised where that is asked for.
     /// Also at a pause.
-    [[nodiscard]] Picture look(const RenderMonitor&);
+    [[nodiscard]] io::Picture look(const integrator::RenderMonitor&);
 
     /// How a sample comes about, whether the film has it or not; its pixel lies in the full frame.
-    [[nodiscard]] SampleRecord trace_sample(SampleId) const;
+    [[nodiscard]] integrator::SampleRecord trace_sample(SampleId) const;
 
     /// What a film of this render has reached of the noise that is asked for; nothing where none
     /// is.
-    [[nodiscard]] std::optional<NoiseReport> noise(const Film&) const;
+    [[nodiscard]] std::optional<integrator::NoiseReport> noise(const Film&) const;
 
     /// The picture so far: R, G, B, A in nits, then the layers. Also at a pause.
-    [[nodiscard]] PictureRows light() const;
+    [[nodiscard]] io::PictureRows light() const;
     /// The picture so far as a display shows it.
-    [[nodiscard]] PictureRows shown() const;
+    [[nodiscard]] io::PictureRows shown() const;
     /// The picture so far with what a file of that name says of it. Also at a pause.
-    [[nodiscard]] PictureRows picture(const std::filesystem::path&) const;
+    [[nodiscard]] io::PictureRows picture(const std::filesystem::path&) const;
     /// Writes the picture so far, as the command line writes it. Throws OutputError.
     void write(const std::filesystem::path&) const;
 
@@ -116,26 +116,29 @@ class RenderSession {
     [[nodiscard]] FoundExposure find_exposure();
 
   private:
-    void prepare_like(RenderSetup before, const RenderRequest&, const Notice&, const PhaseSink&);
+    void prepare_like(RenderSetup before, const RenderRequest&, const io::Notice&,
+                      const PhaseSink&);
     [[nodiscard]] SampleRange complete() const;
-    [[nodiscard]] RenderResult render_to_denoised(
-        RenderJob, const std::function<RenderResult(const RenderJob&)>& render_all, RenderMonitor&);
-    void choose_display(const Notice&);
-    void warn_of_lamps(const Notice&) const;
+    [[nodiscard]] integrator::RenderResult render_to_denoised(
+        integrator::RenderJob,
+        const std::function<integrator::RenderResult(const integrator::RenderJob&)>& render_all,
+        integrator::RenderMonitor&);
+    void choose_display(const io::Notice&);
+    void warn_of_lamps(const io::Notice&) const;
 
-    TbbExecutor executor_;
+    integrator::TbbExecutor executor_;
     std::optional<FrameReuse> frames_;
     RenderRequest request_;
     SceneRequest scene_;  ///< of the request, resolved
-    RenderJob job_;
-    PathOptions path_;
-    DisplayOptions display_;
+    integrator::RenderJob job_;
+    integrator::PathOptions path_;
+    io::DisplayOptions display_;
     RenderSetup setup_;
-    FilmShape shape_;
+    io::FilmShape shape_;
     RenderFacts facts_;
     std::unique_ptr<NextFrame> next_;
     std::optional<Film> film_;
     std::shared_ptr<const DenoisedFilm> denoised_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

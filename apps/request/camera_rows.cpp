@@ -5,7 +5,7 @@
 #include "apps/request/parse.h"
 #include "io/base/ascii.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Bounds that keep every product of two lengths a float; no real lens or place comes near.
@@ -85,7 +85,7 @@ std::string parse_lens(const std::string& option, const std::string& text) {
         throw ValueError(
             option, fmt::format("\"{0}\" is a length; type ⟨lens⟩ thin ⟨focal-length⟩ {0}", text));
     for (const char* word : {"pinhole", "thin"})
-        if (lower(text) == word) return word;
+        if (io::lower(text) == word) return word;
     return text;
 }
 
@@ -191,4 +191,4 @@ std::vector<RequestField> camera_fields() {
     return all;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 #include "core/film/spectral_film.h"
 #include "integrator/render/noise_target.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 void refuse(const char* option, const std::string& why) {
@@ -35,14 +35,14 @@ void check_moment(const MomentRequest& moment, ExposureMode mode) {
 }
 
 void check_crop(const Crop& crop, V2i frame_px, bool to_noise) {
-    const NoiseCells frame{frame_px};
+    const integrator::NoiseCells frame{frame_px};
     if (const auto* band = std::get_if<FrameBand>(&crop)) {
         if (const int most = frame.cells().y; band->of > most)
             refuse("⟨crop⟩",
                    fmt::format("{}/{} asks for {} bands; the number of bands of {} rows is at most "
                                "{}, as each has {} or a little more",
                                band->part, band->of, band->of, frame_px.y, most,
-                               NoiseCells::kCell_px));
+                               integrator::NoiseCells::kCell_px));
         return;
     }
     const Rect rect = std::get<Rect>(crop);
@@ -50,8 +50,8 @@ void check_crop(const Crop& crop, V2i frame_px, bool to_noise) {
     if (const Rect whole = frame.whole_cells(rect); to_noise && whole != rect)
         refuse("⟨crop⟩", fmt::format("with ⟨noise⟩ is of whole cells of {0}x{0} pixels or a "
                                      "little more: {1},{2},{3},{4} holds it",
-                                     NoiseCells::kCell_px, whole.x0, whole.y0, whole.width(),
-                                     whole.height()));
+                                     integrator::NoiseCells::kCell_px, whole.x0, whole.y0,
+                                     whole.width(), whole.height()));
 }
 
 void check_samples(const SampleRequest& samples, bool bins) {
@@ -59,8 +59,9 @@ void check_samples(const SampleRequest& samples, bool bins) {
         refuse("⟨noise⟩",
                "excludes a range of samples: which of them a pixel needs is known as they come; "
                "machines share a picture by ⟨crop⟩");
-    if (samples.noise && samples.count && *samples.count < kLeastOfCell)
-        refuse("⟨spp⟩", fmt::format("to tell the noise takes at least {}", kLeastOfCell));
+    if (samples.noise && samples.count && *samples.count < integrator::kLeastOfCell)
+        refuse("⟨spp⟩",
+               fmt::format("to tell the noise takes at least {}", integrator::kLeastOfCell));
     if (samples.range && samples.count)
         refuse("⟨spp⟩", "is a number of samples or a range of them");
     if (samples.range && samples.time_limit_s)
@@ -86,7 +87,7 @@ Rect pixels_of(const std::optional<Crop>& crop, V2i frame_px) {
     if (!crop) return {0, 0, frame_px.x, frame_px.y};
     if (const Rect* rect = std::get_if<Rect>(&*crop)) return *rect;
     const auto [part, of] = std::get<FrameBand>(*crop);
-    const NoiseCells frame{frame_px};
+    const integrator::NoiseCells frame{frame_px};
     const int rows = frame.cells().y;
     return {0, frame.cell(0, rows * (part - 1) / of).y0, frame_px.x,
             frame.cell(0, rows * part / of - 1).y1};
@@ -136,4 +137,4 @@ void check_sequence(const RenderOrder& order) {
         refuse("⟨sheet⟩", "needs ⟨frames⟩, ⟨turntable⟩ or ⟨sweep⟩");
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

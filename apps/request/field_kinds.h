@@ -15,7 +15,7 @@
 #include "apps/request/parse_choice.h"
 #include "apps/request/quantity.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 template <class T>
 inline constexpr bool kIsOptional = false;
@@ -193,4 +193,4 @@ RequestField flag(const std::string& name, Member member, FieldHeld<Member> on, 
     return field;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,7 +4,7 @@
 
 #include "apps/request/render_order.h"
 
-namespace petzval::in {
+namespace petzval::apps::in {
 
 template <class T>
 auto render(T RenderRequest::*member) {
@@ -19,7 +19,7 @@ auto scene(T SceneRequest::*member) {
     };
 }
 template <class T>
-auto file(T GltfChoices::*member) {
+auto file(T io::GltfChoices::*member) {
     return [=](auto& order) -> auto& {
         return order.render.scene.choices.*member;
     };
@@ -49,7 +49,7 @@ auto samples(T SampleRequest::*member) {
     };
 }
 template <class T>
-auto path(T PathOptions::*member) {
+auto path(T integrator::PathOptions::*member) {
     return [=](auto& order) -> auto& {
         return order.render.path.*member;
     };
@@ -73,4 +73,4 @@ auto sequence(T SequenceRequest::*member) {
     };
 }
 
-}  // namespace petzval::in
+}  // namespace petzval::apps::in

@@ -6,7 +6,7 @@
 
 #include "apps/request/fields.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Fields of one group, taken by these commands.
 [[nodiscard]] std::vector<RequestField> in_group(const std::string& group, uint8_t takers,
@@ -18,4 +18,4 @@ namespace petzval {
 [[nodiscard]] std::vector<RequestField> camera_fields();  ///< camera, lens, exposure
 [[nodiscard]] std::vector<RequestField> run_fields();     ///< files, sequences, how it runs
 
-}  // namespace petzval
+}  // namespace petzval::apps

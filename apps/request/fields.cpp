@@ -6,7 +6,7 @@
 #include "apps/request/field_rows.h"
 #include "apps/request/value_error.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 std::vector<RequestField> in_group(const std::string& group, uint8_t takers,
                                    std::vector<RequestField> fields, FieldPart part) {
@@ -60,4 +60,4 @@ RenderOrder order_of(const std::vector<FieldTexts>& all) {
     return order;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

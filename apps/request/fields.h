@@ -12,7 +12,7 @@
 
 #include "apps/request/render_order.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Commands that take fields; a field has a bit for each.
 enum Taker : uint8_t { kRender = 1, kPlan = 2, kChart = 4, kInfo = 8, kTrace = 16, kLive = 32 };
@@ -68,4 +68,4 @@ struct FieldTexts {
 /// Order with these fields. Throws ValueError, also for a name that no field has.
 [[nodiscard]] RenderOrder order_of(const std::vector<FieldTexts>&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

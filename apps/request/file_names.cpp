@@ -10,15 +10,15 @@
 #include "io/file/atomic_file.h"
 #include "io/picture/picture_kind.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 namespace fs = std::filesystem;
 
 std::string complaint_about_picture_name(const std::string& name) {
     try {
-        static_cast<void>(picture_format(name));
+        static_cast<void>(io::picture_format(name));
         return "";
-    } catch (const InputError& error) {
+    } catch (const io::InputError& error) {
         return error.what();
     }
 }
@@ -35,11 +35,11 @@ std::string complaint_about_display_name(const std::string& name) {
 }
 
 bool is_state_name(const fs::path& path) {
-    return lower(path.extension().string()) == ".state";
+    return io::lower(path.extension().string()) == ".state";
 }
 
 bool is_for_display(const fs::path& picture) {
-    return picture_format(picture) != PictureFormat::Exr;
+    return io::picture_format(picture) != io::PictureFormat::Exr;
 }
 
 RenderFiles files_of(const RenderOrder& order) {
@@ -54,7 +54,7 @@ RenderFiles files_of(const RenderOrder& order) {
         files.state = states.front();
     } else if (files.state_stays || checkpoint.when != Checkpoint::When::Off) {
         const auto file = std::ranges::find_if_not(
-            files.pictures, [](const fs::path& path) { return is_stream(path); });
+            files.pictures, [](const fs::path& path) { return io::is_stream(path); });
         if (file != files.pictures.end()) files.state = fs::path(*file).replace_extension(".state");
         if (!files.state && files.state_stays)
             throw ValueError("⟨output⟩", "needs a file for the state: ⟨output⟩ NAME.state");
@@ -97,4 +97,4 @@ std::optional<double> checkpoint_interval_s(const Checkpoint& checkpoint, const 
     return by_itself ? std::optional(kUsual_s) : std::nullopt;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 
 #include "apps/request/render_order.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Complaint about the name of a picture to write; empty where it is right. As the functions below.
 [[nodiscard]] std::string complaint_about_picture_name(const std::string&);
@@ -49,4 +49,4 @@ void number_files(RunRequest&, int number, bool several);
 [[nodiscard]] std::optional<double> checkpoint_interval_s(const Checkpoint&, const RenderFiles&,
                                                           uint64_t state_bytes);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 #include "apps/request/field_rows.h"
 #include "apps/request/parse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr uint8_t kAll = kPictures | kInfo;
@@ -77,15 +77,16 @@ std::vector<RequestField> size_fields() {
 
 std::vector<RequestField> file_fields() {
     return {
-        text("variant", in::file(&GltfChoices::variant),
+        text("variant", in::file(&io::GltfChoices::variant),
              "variant of the file's materials, by name or index (petzval info lists them)",
              no_complaint),
-        text("scene", in::file(&GltfChoices::scene),
+        text("scene", in::file(&io::GltfChoices::scene),
              "scene of the file, by name or number (default: the one that it names)", no_complaint),
-        method(number(
-            "point-line-radius", in::file(&GltfChoices::point_line_radius_m), {1e-9, 1e9, kMetres},
-            "draw the file's points as spheres and its lines as cylinders of this radius: "
-            "2mm, 0.01 (default: they are skipped)"))};
+        method(
+            number("point-line-radius", in::file(&io::GltfChoices::point_line_radius_m),
+                   {1e-9, 1e9, kMetres},
+                   "draw the file's points as spheres and its lines as cylinders of this radius: "
+                   "2mm, 0.01 (default: they are skipped)"))};
 }
 
 std::vector<RequestField> time_fields() {
@@ -121,7 +122,7 @@ std::vector<RequestField> reading_fields() {
                    return bytes % 1000 == 0 ? fmt::format("{}kB", bytes / 1000)
                                             : fmt::format("{}KiB", double(bytes) / 1024);
                }),
-        flag("confine", in::scene(&SceneRequest::scope), FileScope::Confined,
+        flag("confine", in::scene(&SceneRequest::scope), io::FileScope::Confined,
              "refuse files that the scene names outside its own folder")};
 }
 
@@ -151,4 +152,4 @@ std::vector<RequestField> frame_fields() {
     return all;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -13,7 +13,7 @@
 #include "core/sampling/filter.h"
 #include "core/sampling/sampler.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 template <class T>
 struct OptionName {
@@ -26,35 +26,38 @@ template <class T>
 inline constexpr int kOptionNames = 0;
 
 template <>
-inline constexpr auto kOptionNames<DispersionMode> =
-    std::to_array<OptionName<DispersionMode>>({{"shared", DispersionMode::Shared},
-                                               {"hero", DispersionMode::Hero},
-                                               {"split", DispersionMode::Split}});
+inline constexpr auto kOptionNames<camera::DispersionMode> =
+    std::to_array<OptionName<camera::DispersionMode>>({{"shared", camera::DispersionMode::Shared},
+                                                       {"hero", camera::DispersionMode::Hero},
+                                                       {"split", camera::DispersionMode::Split}});
 template <>
-inline constexpr auto kOptionNames<ApertureScale> = std::to_array<OptionName<ApertureScale>>(
-    {{"area", ApertureScale::EqualArea}, {"inscribed", ApertureScale::Inscribed}});
+inline constexpr auto kOptionNames<camera::ApertureScale> =
+    std::to_array<OptionName<camera::ApertureScale>>({{"area", camera::ApertureScale::EqualArea},
+                                                      {"inscribed",
+                                                       camera::ApertureScale::Inscribed}});
 template <>
-inline constexpr auto kOptionNames<IrisSampling> =
-    std::to_array<OptionName<IrisSampling>>({{"formula", IrisSampling::Formula},
-                                             {"rejection", IrisSampling::Rejection},
-                                             {"triangles", IrisSampling::Triangles},
-                                             {"alias", IrisSampling::Alias}});
+inline constexpr auto kOptionNames<camera::IrisSampling> =
+    std::to_array<OptionName<camera::IrisSampling>>({{"formula", camera::IrisSampling::Formula},
+                                                     {"rejection", camera::IrisSampling::Rejection},
+                                                     {"triangles", camera::IrisSampling::Triangles},
+                                                     {"alias", camera::IrisSampling::Alias}});
 template <>
-inline constexpr auto kOptionNames<Coating> = [] {
-    std::array<OptionName<Coating>, kCoatingNames.size()> names{};
+inline constexpr auto kOptionNames<camera::Coating> = [] {
+    std::array<OptionName<camera::Coating>, camera::kCoatingNames.size()> names{};
     for (size_t i = 0; i < names.size(); ++i)
-        names[i] = {kCoatingNames[i].first, kCoatingNames[i].second};
+        names[i] = {camera::kCoatingNames[i].first, camera::kCoatingNames[i].second};
     return names;
 }();
 template <>
-inline constexpr auto kOptionNames<Precision> = std::to_array<OptionName<Precision>>(
-    {{"float", Precision::Float}, {"double", Precision::Double}});
+inline constexpr auto kOptionNames<camera::Precision> =
+    std::to_array<OptionName<camera::Precision>>({{"float", camera::Precision::Float},
+                                                  {"double", camera::Precision::Double}});
 template <>
 inline constexpr auto kOptionNames<ExposureMode> = std::to_array<OptionName<ExposureMode>>(
     {{"normalised", ExposureMode::Normalised}, {"photographic", ExposureMode::Photographic}});
 template <>
-inline constexpr auto kOptionNames<FocusBy> = std::to_array<OptionName<FocusBy>>(
-    {{"paraxial", FocusBy::Paraxial}, {"traced", FocusBy::Traced}});
+inline constexpr auto kOptionNames<camera::FocusBy> = std::to_array<OptionName<camera::FocusBy>>(
+    {{"paraxial", camera::FocusBy::Paraxial}, {"traced", camera::FocusBy::Traced}});
 template <>
 inline constexpr auto kOptionNames<Fit> = std::to_array<OptionName<Fit>>({{"lens", Fit::Lens},
                                                                           {"fov", Fit::Fov}});
@@ -116,4 +119,4 @@ template <class T>
     return "";
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

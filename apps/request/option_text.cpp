@@ -6,7 +6,7 @@
 
 #include "apps/request/fields.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 bool is_method(const std::string& name) {
@@ -53,4 +53,4 @@ std::string as_options(const std::string& message) {
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Spelling of a field's name; has_value: a value follows, and the spelling ends with what stands
 /// between them.
@@ -19,4 +19,4 @@ using NameSpelling = std::function<std::string(const std::string& name, bool has
 /// compares methods, --method sampler. A value stands behind "=": ⟨focus⟩=1 reads --focus 1.
 [[nodiscard]] std::string as_options(const std::string& message);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -12,7 +12,7 @@
 #include "io/base/ascii.h"
 #include "io/base/nearest.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr int kLargestSide_px = 65536;
@@ -39,19 +39,19 @@ std::vector<std::string> sides(std::string text) {
     constexpr std::string_view times = "×";
     if (const size_t at = text.find(times); at != std::string::npos)
         text.replace(at, times.size(), "x");
-    text = lower(std::move(text));
+    text = io::lower(std::move(text));
     std::vector<std::string> out;
-    for (const std::string_view side : split(text, 'x')) out.emplace_back(trimmed(side));
+    for (const std::string_view side : io::split(text, 'x')) out.emplace_back(io::trimmed(side));
     return out;
 }
 
 std::vector<float> parse_all(const std::string& option, const std::string& text, size_t n,
                              std::span<const Unit> units, const char* what) {
     std::vector<float> values;
-    for (const std::string_view part : split(text, ','))
+    for (const std::string_view part : io::split(text, ','))
         if (const auto value = quantity(part, units); value && std::isfinite(float(*value)))
             values.push_back(static_cast<float>(*value));
-    if (values.size() != n || split(text, ',').size() != n)
+    if (values.size() != n || io::split(text, ',').size() != n)
         refuse(option, text, fmt::format("{} {} with commas between them", n, what));
     return values;
 }
@@ -92,15 +92,16 @@ V2f parse_sensor(const std::string& option, const std::string& text, double leas
 }
 
 Crop parse_crop(const std::string& option, const std::string& text) {
-    if (const auto parts = split(text, '/'); parts.size() == 2) {
-        const auto part = number<int>(trimmed(parts[0])), of = number<int>(trimmed(parts[1]));
+    if (const auto parts = io::split(text, '/'); parts.size() == 2) {
+        const auto part = number<int>(io::trimmed(parts[0])),
+                   of = number<int>(io::trimmed(parts[1]));
         if (part && of && 1 <= *part && *part <= *of) return FrameBand{*part, *of};
         refuse(option, text, "I/N, the I-th of N bands of the frame, with I from 1 to N");
     }
-    const auto parts = split(text, ',');
+    const auto parts = io::split(text, ',');
     std::vector<int> v;
     for (const std::string_view part : parts)
-        if (const auto value = number<int>(trimmed(part))) v.push_back(*value);
+        if (const auto value = number<int>(io::trimmed(part))) v.push_back(*value);
     const auto fits = [](int at, int size) {
         return at >= 0 && size >= 1 && at <= kLargestSide_px && size <= kLargestSide_px;
     };
@@ -122,9 +123,9 @@ void check_inside(const std::string& option, const Rect& crop, V2i frame) {
 }
 
 SampleRange parse_samples(const std::string& option, const std::string& text, uint32_t most) {
-    if (const auto parts = split(text, ':'); parts.size() == 2) {
-        const auto first = number<uint32_t>(trimmed(parts[0])),
-                   end = number<uint32_t>(trimmed(parts[1]));
+    if (const auto parts = io::split(text, ':'); parts.size() == 2) {
+        const auto first = number<uint32_t>(io::trimmed(parts[0])),
+                   end = number<uint32_t>(io::trimmed(parts[1]));
         if (first && end && *first < *end && *end <= most) return {*first, *end};
     }
     refuse(option, text,
@@ -132,8 +133,8 @@ SampleRange parse_samples(const std::string& option, const std::string& text, ui
 }
 
 V2i parse_pixel(const std::string& option, const std::string& text) {
-    if (const auto parts = split(text, ','); parts.size() == 2) {
-        const auto x = number<int>(trimmed(parts[0])), y = number<int>(trimmed(parts[1]));
+    if (const auto parts = io::split(text, ','); parts.size() == 2) {
+        const auto x = number<int>(io::trimmed(parts[0])), y = number<int>(io::trimmed(parts[1]));
         if (x && y) return {*x, *y};
     }
     refuse(option, text, "a pixel x,y");
@@ -151,7 +152,7 @@ constexpr std::array<DurationUnit, 5> kDurations{
 
 // Seconds from "1:30" and "1:02:30", as the progress line writes them.
 std::optional<double> clock_s(std::string_view text) {
-    const auto parts = split(text, ':');
+    const auto parts = io::split(text, ':');
     if (parts.size() < 2 || parts.size() > 3) return std::nullopt;
     double sum_s = 0;
     for (size_t i = 0; i < parts.size(); ++i) {
@@ -165,10 +166,10 @@ std::optional<double> clock_s(std::string_view text) {
 // Seconds from numbers with units, each unit once and the longest first: "1h 30m".
 std::optional<double> with_units_s(std::string_view text) {
     double sum_s = 0, shortest_s = std::numeric_limits<double>::infinity();
-    for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+    for (text = io::trimmed(text); !text.empty(); text = io::trimmed(text)) {
         const size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
         const auto value = number<double>(text.substr(0, digits));
-        text = trimmed(text.substr(digits));
+        text = io::trimmed(text.substr(digits));
         const std::string_view word = text.substr(0, text.find_first_of("0123456789. "));
         text.remove_prefix(word.size());
         const auto unit = std::find_if(kDurations.begin(), kDurations.end(),
@@ -186,17 +187,17 @@ double parse_duration_s(const std::string& option, const std::string& text) {
     constexpr double longest_s = 1e9;
     std::optional<double> s = number<double>(text);
     if (!s) s = clock_s(text);
-    if (!s) s = with_units_s(lower(text));
+    if (!s) s = with_units_s(io::lower(text));
     if (!s || !(*s > 0 && *s <= longest_s))
         refuse(option, text, "a time such as 90s, 1.5m, 1h30m or 1:30");
     return *s;
 }
 
 ExposureRequest parse_exposure(const std::string& option, const std::string& text) {
-    std::string_view digits = trimmed(text);
-    if (lower(std::string(digits)) == "auto") return {true};
-    if (lower(std::string(digits)).ends_with("ev"))
-        digits = trimmed(digits.substr(0, digits.size() - 2));
+    std::string_view digits = io::trimmed(text);
+    if (io::lower(std::string(digits)) == "auto") return {true};
+    if (io::lower(std::string(digits)).ends_with("ev"))
+        digits = io::trimmed(digits.substr(0, digits.size() - 2));
     const auto value = number<float>(digits);
     if (!value || std::fabs(*value) > kMostExposure_ev)
         refuse(option, text,
@@ -215,7 +216,7 @@ uint64_t parse_memory_bytes(const std::string& option, const std::string& text) 
                                          {"GiB", 0x1p30},
                                          {"TiB", 0x1p40}}};
     const auto bytes = quantity(text, units);
-    if (bytes && !number<double>(trimmed(text)) && *bytes >= 1 && *bytes < 0x1p62)
+    if (bytes && !number<double>(io::trimmed(text)) && *bytes >= 1 && *bytes < 0x1p62)
         return static_cast<uint64_t>(*bytes);
     refuse(option, text, "an amount of memory such as 512MB, 8GB or 8GiB");
 }
@@ -223,7 +224,7 @@ uint64_t parse_memory_bytes(const std::string& option, const std::string& text) 
 double parse_share(const std::string& option, const std::string& text) {
     const bool per_cent = text.ends_with('%');
     const auto value =
-        number<double>(trimmed(std::string_view(text).substr(0, text.size() - per_cent)));
+        number<double>(io::trimmed(std::string_view(text).substr(0, text.size() - per_cent)));
     const double share = value.value_or(0) / (per_cent ? 100 : 1);
     if (!(share > 0 && share <= 1))
         refuse(option, text, "a share such as 1% or 0.01, 100% at most");
@@ -234,7 +235,7 @@ Moment parse_moment(const std::string& option, const std::string& text) {
     constexpr double kMost_s = 1e6;
     constexpr std::array<Unit, 4> kSeconds{{{"s"}, {"sec"}, {"ms", 1, 1000}, {"min", 60, 1}}};
     constexpr std::string_view kFrame = "frame:";
-    const std::string_view given = trimmed(text);
+    const std::string_view given = io::trimmed(text);
     const bool is_frame = given.starts_with(kFrame);
     const auto value =
         is_frame ? number<double>(given.substr(kFrame.size())) : quantity(given, kSeconds);
@@ -243,13 +244,13 @@ Moment parse_moment(const std::string& option, const std::string& text) {
 }
 
 ShutterTime parse_shutter(const std::string& option, const std::string& text) {
-    if (!number<double>(trimmed(text)))
+    if (!number<double>(io::trimmed(text)))
         if (const auto angle_deg = quantity(text, kDegrees); angle_deg && *angle_deg > 0)
             return {*angle_deg, true};
     std::string_view digits = text;
     const float per_s = digits.ends_with("ms") ? 1000 : 1;
     if (digits.ends_with('s')) digits.remove_suffix(per_s == 1 ? 1 : 2);
-    const auto parts = split(trimmed(digits), '/');
+    const auto parts = io::split(io::trimmed(digits), '/');
     const auto above = number<float>(parts[0]);
     const auto below = parts.size() == 2 ? number<float>(parts[1]) : std::optional(1.f);
     if (parts.size() <= 2 && above && below)
@@ -260,7 +261,7 @@ ShutterTime parse_shutter(const std::string& option, const std::string& text) {
 namespace {
 
 std::optional<float> focus_distance_m(std::string_view text) {
-    const std::string word = lower(std::string(trimmed(text)));
+    const std::string word = io::lower(std::string(io::trimmed(text)));
     if (word == "infinity" || word == "inf" || word == "∞")
         return std::numeric_limits<float>::infinity();
     const auto value = quantity(text, kMetres);
@@ -285,9 +286,9 @@ float parse_focus_distance_m(const std::string& option, const std::string& text)
 }
 
 Focus parse_focus(const std::string& option, const std::string& text) {
-    if (lower(text) == "auto") return FocusAuto{};
-    if (const auto parts = split(text, ','); parts.size() == 2) {
-        const auto x = number<int>(trimmed(parts[0])), y = number<int>(trimmed(parts[1]));
+    if (io::lower(text) == "auto") return FocusAuto{};
+    if (const auto parts = io::split(text, ','); parts.size() == 2) {
+        const auto x = number<int>(io::trimmed(parts[0])), y = number<int>(io::trimmed(parts[1]));
         if (x && y && *x >= 0 && *y >= 0) return FocusPixel{*x, *y};
         refuse(option, text, "a pixel x,y of the frame");
     }
@@ -307,7 +308,7 @@ Bins parse_bins(const std::string& option, const std::string& text) {
     constexpr int most = 1024;  // more channels than readers of EXR expect
     // A wavelength is a float, which has steps of 0.00006 nm: narrower bins would show them.
     constexpr double narrowest_nm = 0.1;
-    const auto parts = split(text, ':');
+    const auto parts = io::split(text, ':');
     std::vector<double> v;
     for (const std::string_view part : parts)
         if (const auto value = quantity(part, kNanometres)) v.push_back(*value);
@@ -335,13 +336,13 @@ std::vector<std::string> layer_names() {
 
 void add_aovs(const std::string& option, const std::string& list, std::vector<Aov>& layers) {
     const std::vector<std::string> known = layer_names();
-    for (const std::string_view part : split(list, ',')) {
-        const std::string name = lower(std::string(trimmed(part)));
+    for (const std::string_view part : io::split(list, ',')) {
+        const std::string name = io::lower(std::string(io::trimmed(part)));
         const auto aov = aov_from_name(name);
         if (!aov)
             refuse(option, name,
                    fmt::format("a layer; there are {}{}", fmt::join(known, ", "),
-                               did_you_mean(name, known)));
+                               io::did_you_mean(name, known)));
         if (std::find(layers.begin(), layers.end(), *aov) == layers.end()) layers.push_back(*aov);
     }
 }
@@ -389,8 +390,8 @@ std::string text_of_pose(const M44f& pose) {
 std::vector<int> parse_frames(const std::string& option, const std::string& text) {
     constexpr int kMostFrames = 100'000, kLastFrame = 10'000'000;
     std::vector<int> numbers;
-    for (const std::string_view part : split(text, ':'))
-        numbers.push_back(number<int>(trimmed(part)).value_or(-1));
+    for (const std::string_view part : io::split(text, ':'))
+        numbers.push_back(number<int>(io::trimmed(part)).value_or(-1));
     const bool right =
         numbers.size() <= 3 && std::all_of(numbers.begin(), numbers.end(),
                                            [](int n) { return n >= 0 && n <= kLastFrame; });
@@ -411,8 +412,8 @@ Sweep parse_sweep(const std::string& option, const std::string& text) {
         sweep.field = text.substr(0, at);
         const std::string values = text.substr(at + 1);
         for (const std::string_view part :
-             split(values, values.find(';') == values.npos ? ',' : ';'))
-            sweep.values.emplace_back(trimmed(part));
+             io::split(values, values.find(';') == values.npos ? ',' : ';'))
+            sweep.values.emplace_back(io::trimmed(part));
     }
     if (sweep.values.empty() || std::ranges::find(sweep.values, "") != sweep.values.end())
         refuse(option, text,
@@ -421,4 +422,4 @@ Sweep parse_sweep(const std::string& option, const std::string& text) {
     return sweep;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

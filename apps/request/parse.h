@@ -11,7 +11,7 @@
 #include "core/film/film.h"
 #include "core/spectrum/bins.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Numbers from "a,b,c": exactly n, finite.
 [[nodiscard]] std::vector<float> parse_numbers(const std::string& option, const std::string& text,
@@ -76,4 +76,4 @@ void add_aovs(const std::string& option, const std::string& list, std::vector<Ao
 /// Sweep from "fstop=1.4,2,2.8", with semicolons between values that hold commas.
 [[nodiscard]] Sweep parse_sweep(const std::string& option, const std::string& text);
 
-}  // namespace petzval
+}  // namespace petzval::apps

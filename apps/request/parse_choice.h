@@ -14,7 +14,7 @@
 #include "io/base/ascii.h"
 #include "io/base/nearest.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
@@ -33,11 +33,11 @@ template <class T>
                              const Choices<T>& choices) {
     std::vector<std::string> known;
     for (const auto& [word, choice] : choices) {
-        if (word == lower(text)) return choice;
+        if (word == io::lower(text)) return choice;
         known.push_back(word);
     }
     throw ValueError(option, fmt::format("\"{}\" is none of {}{}", text, fmt::join(known, ", "),
-                                         did_you_mean(text, known)));
+                                         io::did_you_mean(text, known)));
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,36 +4,36 @@
 #include "apps/request/field_rows.h"
 #include "apps/request/parse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr double kLargest = 1e6;  ///< keeps every product of two numbers a float
 
 std::vector<RequestField> sampling_fields() {
-    return {
-        method(number("max-depth", in::path(&PathOptions::max_depth), {0, 10000},
-                      "scatterings of a path, without those at clear glass (default 16)")),
-        method(number("max-clear-depth", in::path(&PathOptions::max_specular_depth), {0, 100000},
-                      "reflections and refractions of a path at clear glass (default 256)")),
-        method(choice("filter", in::samples(&SampleRequest::filter),
-                      "pixel filter: box, gauss, blackman-harris (default)")),
-        method(number("filter-radius", in::samples(&SampleRequest::filter_radius_px),
-                      {0.01, 16, kPixels}, "pixels (default: box 0.5, the others 1.5)")),
-        method(choice("sampler", in::samples(&SampleRequest::sampler),
-                      "owen (default), sobol, independent")),
-        method(choice(
-            "light-choice", in::scene(&SceneRequest::light_choice),
-            "how one of many lights is chosen: tree (default; power, distance and direction), "
-            "power, uniform")),
-        method(choice(
-            "targets", in::scene(&SceneRequest::targets),
-            "camera rays to small lamps and highlights out of focus: auto (default; where they "
-            "pay), off")),
-        method(
-            number("clamp", in::samples(&SampleRequest::clamp_nits), {1e-9, 1e12},
-                   "largest R, G or B of a sample, in nits: takes fireflies, and light with them")),
-        method(choice("traversal", in::scene(&SceneRequest::traversal),
-                      "robust (default): watertight; fast: may leak at edges"))};
+    return {method(number("max-depth", in::path(&integrator::PathOptions::max_depth), {0, 10000},
+                          "scatterings of a path, without those at clear glass (default 16)")),
+            method(number("max-clear-depth", in::path(&integrator::PathOptions::max_specular_depth),
+                          {0, 100000},
+                          "reflections and refractions of a path at clear glass (default 256)")),
+            method(choice("filter", in::samples(&SampleRequest::filter),
+                          "pixel filter: box, gauss, blackman-harris (default)")),
+            method(number("filter-radius", in::samples(&SampleRequest::filter_radius_px),
+                          {0.01, 16, kPixels}, "pixels (default: box 0.5, the others 1.5)")),
+            method(choice("sampler", in::samples(&SampleRequest::sampler),
+                          "owen (default), sobol, independent")),
+            method(choice(
+                "light-choice", in::scene(&SceneRequest::light_choice),
+                "how one of many lights is chosen: tree (default; power, distance and direction), "
+                "power, uniform")),
+            method(choice(
+                "targets", in::scene(&SceneRequest::targets),
+                "camera rays to small lamps and highlights out of focus: auto (default; where they "
+                "pay), off")),
+            method(number(
+                "clamp", in::samples(&SampleRequest::clamp_nits), {1e-9, 1e12},
+                "largest R, G or B of a sample, in nits: takes fireflies, and light with them")),
+            method(choice("traversal", in::scene(&SceneRequest::traversal),
+                          "robust (default): watertight; fast: may leak at edges"))};
 }
 
 Rgb parse_background(const std::string& option, const std::string& text) {
@@ -92,10 +92,10 @@ std::vector<RequestField> path_fields() {
     };
     add(in_group("Light", kPictures, light_fields()));
     add(in_group("Light", kRender | kPlan,
-                 {flag("transparent", in::path(&PathOptions::transparent), true,
+                 {flag("transparent", in::path(&integrator::PathOptions::transparent), true,
                        "the sky lights the scene but is not seen: alpha 0")}));
     add(in_group("Spectrum", kPictures, spectrum_fields()));
     return all;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

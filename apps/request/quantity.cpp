@@ -5,7 +5,7 @@
 
 #include "io/base/ascii.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // "m (or mm, cm)", or nothing.
@@ -37,12 +37,13 @@ std::string_view without_f(std::string_view text) {
 }  // namespace
 
 std::optional<double> quantity(std::string_view text, std::span<const Unit> units) {
-    text = trimmed(text);
+    text = io::trimmed(text);
     if (const auto plain = number<double>(text)) return plain;
-    const std::string lowered = lower(std::string(text));
+    const std::string lowered = io::lower(std::string(text));
     for (const Unit& unit : units) {
-        if (!lowered.ends_with(lower(std::string(unit.name)))) continue;
-        const auto value = number<double>(trimmed(text.substr(0, text.size() - unit.name.size())));
+        if (!lowered.ends_with(io::lower(std::string(unit.name)))) continue;
+        const auto value =
+            number<double>(io::trimmed(text.substr(0, text.size() - unit.name.size())));
         if (value) return *value * unit.times / unit.over;
     }
     return std::nullopt;
@@ -56,7 +57,7 @@ double parse_number(const std::string& option, const std::string& text, const Nu
 }
 
 double parse_fnumber(const std::string& option, const std::string& text, const NumberRange& range) {
-    const auto value = number<double>(without_f(trimmed(text)));
+    const auto value = number<double>(without_f(io::trimmed(text)));
     if (!value || *value < range.least || *value > range.most)
         throw ValueError(option, complaint(text, range) + ", as 2 or f/2");
     return *value;
@@ -71,4 +72,4 @@ uint64_t parse_whole_number(const std::string& option, const std::string& text, 
     return *value;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

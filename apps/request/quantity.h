@@ -16,7 +16,7 @@
 #include "apps/request/value_error.h"
 #include "io/file/text_lines.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Unit of a kind: a number in it counts `times` / `over` of the kind's first unit. As a ratio,
 /// since 35 / 1000 is the double nearest to 0.035, and 35 * 0.001 is not.
@@ -72,4 +72,4 @@ struct NumberRange {
 [[nodiscard]] uint64_t parse_whole_number(const std::string& option, const std::string& text,
                                           uint64_t least, uint64_t most);
 
-}  // namespace petzval
+}  // namespace petzval::apps

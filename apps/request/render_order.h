@@ -10,7 +10,7 @@
 
 #include "apps/request/render_request.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Percent: lines such as "PROGRESS 37%", for programs that look for one.
 enum class ProgressStyle : uint8_t { Auto, Bar, Lines, Json, Percent, None };
@@ -65,4 +65,4 @@ void check(const RenderOrder&);
 /// Throws ValueError where an order does not say which of several pictures it is for.
 void check_sequence(const RenderOrder&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

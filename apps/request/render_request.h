@@ -16,7 +16,7 @@
 #include "integrator/path/path_options.h"
 #include "integrator/render/render_job.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 inline constexpr double kUsualTolerance = 0.01;
 inline constexpr uint32_t kUsualSamples = 64;
@@ -96,7 +96,7 @@ struct RenderRequest {
     std::vector<Aov> layers;
     bool denoise = false;  ///< and say how large the error is
     SampleRequest samples;
-    PathOptions path;
+    integrator::PathOptions path;
     double tolerance = kUsualTolerance;  ///< of what is chosen for the user, above 0
     DisplayRequest display;
 };
@@ -109,6 +109,6 @@ void check(const RenderRequest&);
 [[nodiscard]] SceneRequest resolved_scene(const RenderRequest&);
 
 /// The job of a request, without what its scene adds: observer and velocities.
-[[nodiscard]] RenderJob job_of(const RenderRequest&);
+[[nodiscard]] integrator::RenderJob job_of(const RenderRequest&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -11,7 +11,7 @@
 #include "io/base/machine.h"
 #include "io/file/csv.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 double time_s(const Moment& at, double fps) {
@@ -32,35 +32,36 @@ float shutter_s(const ShutterTime& time, double fps) {
     return s;
 }
 
-ShutterCurve curve_in(const std::string& file) {
+camera::ShutterCurve curve_in(const std::string& file) {
     if (file.find('.') == file.npos && file.find('/') == file.npos)
         throw ValueError(
             "⟨shutter-curve⟩",
             fmt::format("\"{}\" is neither box, trapezoid nor the name of a CSV file", file));
-    const CsvTable table = read_csv(file);
+    const io::CsvTable table = io::read_csv(file);
     if (table.names.size() != 2)
-        throw InputError(file, table.place(0), "must hold two columns, time and open");
+        throw io::InputError(file, table.place(0), "must hold two columns, time and open");
     if (table.rows.size() < 2)
-        throw InputError(file, table.place(0), "must hold two rows at least");
+        throw io::InputError(file, table.place(0), "must hold two rows at least");
     const double first = table.rows.front()[0], whole = table.rows.back()[0] - first;
-    ShutterCurve curve;
+    camera::ShutterCurve curve;
     for (size_t i = 0; i < table.rows.size(); ++i) {
         const auto& row = table.rows[i];
         if (i > 0 && !(row[0] >= table.rows[i - 1][0]))
-            throw InputError(file, table.place(i), "is at an earlier time than the row before it");
+            throw io::InputError(file, table.place(i),
+                                 "is at an earlier time than the row before it");
         if (!(row[1] >= 0 && row[1] <= 1e6))
-            throw InputError(file, table.place(i), "is open by less than 0, or over 1e6");
+            throw io::InputError(file, table.place(i), "is open by less than 0, or over 1e6");
         curve.points.push_back(
             {static_cast<float>((row[0] - first) / whole), static_cast<float>(row[1])});
     }
     if (!(whole > 0) || !(curve.efficiency() > 0))
-        throw InputError(file, table.place(0), "never lets any light in");
+        throw io::InputError(file, table.place(0), "never lets any light in");
     return curve;
 }
 
-ShutterCurve curve_of(const std::string& text) {
-    if (text.empty() || text == "box") return ShutterCurve::box();
-    return text == "trapezoid" ? ShutterCurve::trapezoid() : curve_in(text);
+camera::ShutterCurve curve_of(const std::string& text) {
+    if (text.empty() || text == "box") return camera::ShutterCurve::box();
+    return text == "trapezoid" ? camera::ShutterCurve::trapezoid() : curve_in(text);
 }
 
 }  // namespace
@@ -73,18 +74,18 @@ SceneRequest resolved_scene(const RenderRequest& request) {
         if (moment.at) scene.camera.shutter_curve = curve_of(moment.shutter_curve);
     }
     if (moment.at)
-        scene.choices.animation = AnimationChoice{time_s(*moment.at, moment.fps), moment.animations,
-                                                  moment.loop, scene.camera.open_s()};
+        scene.choices.animation = io::AnimationChoice{
+            time_s(*moment.at, moment.fps), moment.animations, moment.loop, scene.camera.open_s()};
     return scene;
 }
 
 int threads_of(const RunRequest& run) {
-    return run.threads > 0 ? run.threads : std::min(usable_threads(), kMostThreads);
+    return run.threads > 0 ? run.threads : std::min(io::usable_threads(), kMostThreads);
 }
 
-RenderJob job_of(const RenderRequest& request) {
+integrator::RenderJob job_of(const RenderRequest& request) {
     const SampleRequest& samples = request.samples;
-    RenderJob job;
+    integrator::RenderJob job;
     job.time_limit_s = samples.time_limit_s;
     const uint32_t usual = samples.noise ? kUsualNoiseSamples : kUsualSamples;
     job.end_sample = samples.count.value_or(job.time_limit_s ? kMostSamples : usual);
@@ -102,4 +103,4 @@ RenderJob job_of(const RenderRequest& request) {
     return job;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

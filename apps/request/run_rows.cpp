@@ -6,7 +6,7 @@
 #include "apps/request/parse.h"
 #include "io/base/ascii.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr int kMostViews = 100'000;
@@ -104,8 +104,8 @@ std::string text_of(const Checkpoint& checkpoint) {
 }
 
 Checkpoint parse_checkpoint(const std::string& option, const std::string& text) {
-    if (lower(text) == "auto") return {};
-    if (lower(text) == "off") return {Checkpoint::When::Off};
+    if (io::lower(text) == "auto") return {};
+    if (io::lower(text) == "off") return {Checkpoint::When::Off};
     return {Checkpoint::When::Every, parse_duration_s(option, text)};
 }
 
@@ -145,4 +145,4 @@ std::vector<RequestField> run_fields() {
     return all;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -25,7 +25,7 @@
 #include "io/gltf/validate/source.h"
 #include "io/picture/picture_budget.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Greatest distance that is not called infinity.
 inline constexpr float kFarthestFocus_m = 1e9f;
@@ -75,22 +75,24 @@ struct CameraRequest {
     std::optional<float> film_distance_mm;  ///< from a thin lens
     std::optional<V2f> sensor_mm;
     std::optional<Focus> focus;
-    FocusBy focus_by = FocusBy::Paraxial;
+    camera::FocusBy focus_by = camera::FocusBy::Paraxial;
     Fit fit = Fit::Lens;
     std::optional<std::string> aperture;  ///< as parse_aperture reads it
-    ApertureScale aperture_scale = ApertureScale::EqualArea;
-    std::optional<IrisSampling> iris_sampling;
-    std::optional<DispersionMode> dispersion;  ///< absent: as a plan finds, or dispersion_by()
-    Coating coating = Coating::Ideal;
+    camera::ApertureScale aperture_scale = camera::ApertureScale::EqualArea;
+    std::optional<camera::IrisSampling> iris_sampling;
+    std::optional<camera::DispersionMode>
+        dispersion;  ///< absent: as a plan finds, or dispersion_by()
+    camera::Coating coating = camera::Coating::Ideal;
     GhostUse ghosts = GhostUse::Auto;
     DiffractionUse diffraction = DiffractionUse::Off;
-    Precision precision = Precision::Float;
+    camera::Precision precision = camera::Precision::Float;
     ExposureMode exposure = ExposureMode::Normalised;
     float iso = 100, shutter_s = 0.01f;
     /// Given: what moves is blurred. The shutter's time is that of one which opens and closes at
     /// once and lets as much light in.
-    std::optional<ShutterCurve> shutter_curve;
-    std::optional<PictureBudget> iris_pictures;  ///< what those of the scene leave; absent: usual
+    std::optional<camera::ShutterCurve> shutter_curve;
+    std::optional<io::PictureBudget>
+        iris_pictures;  ///< what those of the scene leave; absent: usual
     /// Fall-off to the corners of lenses that are not traced; absent: with photographic exposure.
     std::optional<bool> natural_vignetting;
     std::vector<std::filesystem::path> glasses;  ///< catalogues that go before those that ship
@@ -101,8 +103,9 @@ struct CameraRequest {
     }
     /// How wavelengths pass through the lens where no plan chooses: along one ray if its glass does
     /// not disperse.
-    [[nodiscard]] DispersionMode dispersion_by(bool glass_disperses) const {
-        return dispersion.value_or(glass_disperses ? DispersionMode::Hero : DispersionMode::Shared);
+    [[nodiscard]] camera::DispersionMode dispersion_by(bool glass_disperses) const {
+        return dispersion.value_or(glass_disperses ? camera::DispersionMode::Hero
+                                                   : camera::DispersionMode::Shared);
     }
 };
 
@@ -139,15 +142,16 @@ struct SceneRequest {
     Traversal traversal = Traversal::Robust;
     TargetUse targets = TargetUse::Auto;  ///< whether camera rays are sent to small lamps
     SpectralRequest spectral;
-    std::vector<NamedFile> outputs;  ///< files to be written: a scene that reads one is refused
+    std::vector<io::NamedFile> outputs;  ///< files to be written: a scene that reads one is refused
     /// Memory for decoded pictures; absent: half of what can be had.
     std::optional<uint64_t> picture_memory_bytes;
-    FileScope scope = FileScope::Anywhere;  ///< of files that the scene names
-    GltfChoices choices;                    ///< what is taken of the scene's file
+    io::FileScope scope = io::FileScope::Anywhere;  ///< of files that the scene names
+    io::GltfChoices choices;                        ///< what is taken of the scene's file
 
     /// Budget of decoded pictures.
-    [[nodiscard]] PictureBudget pictures() const {
-        return picture_memory_bytes ? PictureBudget(*picture_memory_bytes) : PictureBudget();
+    [[nodiscard]] io::PictureBudget pictures() const {
+        return picture_memory_bytes ? io::PictureBudget(*picture_memory_bytes)
+                                    : io::PictureBudget();
     }
     /// How one of many lights is chosen where no plan chooses.
     [[nodiscard]] LightChoiceKind lights() const {
@@ -155,4 +159,4 @@ struct SceneRequest {
     }
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -7,7 +7,7 @@
 #include "apps/request/file_names.h"
 #include "apps/request/value_error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 std::vector<SequenceItem> views(int count) {
@@ -53,4 +53,4 @@ RenderOrder order_of(const SequenceItem& item, const RenderOrder& all, bool seve
     return order;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

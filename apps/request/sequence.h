@@ -7,7 +7,7 @@
 
 #include "apps/request/render_order.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// One picture of a sequence: how its order differs from that of all.
 struct SequenceItem {
@@ -23,4 +23,4 @@ struct SequenceItem {
 /// pictures would share the names of their files.
 [[nodiscard]] RenderOrder order_of(const SequenceItem&, const RenderOrder& all, bool several);
 
-}  // namespace petzval
+}  // namespace petzval::apps

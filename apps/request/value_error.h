@@ -7,14 +7,14 @@
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Value that an option cannot take, or options that do not go together. what() reads "OPTION:
 /// WHY".
-class ValueError : public ArgumentError {
+class ValueError : public io::ArgumentError {
   public:
     ValueError(std::string option, std::string why)
-        : ArgumentError(option, "", why), option_(std::move(option)), why_(std::move(why)) {}
+        : io::ArgumentError(option, "", why), option_(std::move(option)), why_(std::move(why)) {}
 
     [[nodiscard]] const std::string& option() const { return option_; }
     [[nodiscard]] const std::string& why() const { return why_; }
@@ -23,4 +23,4 @@ class ValueError : public ArgumentError {
     std::string option_, why_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -11,7 +11,7 @@
 #include "io/base/format.h"
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Side of the blocks whose means are taken as independent of each other.
@@ -126,7 +126,7 @@ std::vector<float> errors_about(const Blocks& blocks) {
 // Brightness by which the error of a pixel is told.
 class Surroundings {
   public:
-    explicit Surroundings(const Denoised& picture)
+    explicit Surroundings(const integrator::Denoised& picture)
         : width_(picture.crop.width()),
           height_(picture.crop.height()),
           sums_(static_cast<size_t>(width_ + 1) * static_cast<size_t>(height_ + 1), Imath::V3d(0)) {
@@ -155,8 +155,8 @@ class Surroundings {
     std::vector<Imath::V3d> sums_;  ///< of all pixels above and to the left
 };
 
-double floor_of(const Denoised& picture) {
-    SymmetricFloor floor;
+double floor_of(const integrator::Denoised& picture) {
+    io::SymmetricFloor floor;
     for (const V3f& c : picture.colour) floor.add(double(luminance({c.x, c.y, c.z})));
     return floor.floor();
 }
@@ -177,16 +177,18 @@ double DenoisedError::value() const {
 
 std::string text_of(const DenoisedFilm& film) {
     const auto text = [](const DenoisedError& error) {
-        return error.is_at_most() ? fmt::format("at most {}", percent(error.most()))
-                                  : fmt::format("{} ({} to {})", percent(error.value()),
-                                                percent(error.least()), percent(error.most()));
+        return error.is_at_most()
+                   ? fmt::format("at most {}", io::percent(error.most()))
+                   : fmt::format("{} ({} to {})", io::percent(error.value()),
+                                 io::percent(error.least()), io::percent(error.most()));
     };
     return fmt::format("denoised: error {}, and {} without", text(film.error), text(film.noisy));
 }
 
-std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film, TbbExecutor& executor,
+std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film,
+                                                  integrator::TbbExecutor& executor,
                                                   const std::atomic<bool>& stop) {
-    std::optional<Denoised> picture = denoise(film, executor, &stop);
+    std::optional<integrator::Denoised> picture = integrator::denoise(film, executor, &stop);
     if (!picture) return nullptr;
     auto out = std::make_shared<DenoisedFilm>();
     out->picture = std::move(*picture);
@@ -225,4 +227,4 @@ std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film, TbbExecutor&
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 #include "integrator/denoise/denoise.h"
 #include "integrator/render/executor.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Error of a picture or of a part of it: the root of the mean, over its pixels and R, G and B, of
 /// squared error / (m^2 + floor^2), m being the mean of what is denoised over 7 x 7 pixels. By the
@@ -30,7 +30,7 @@ struct DenoisedError {
 
 /// What a film with halves shows when it is denoised.
 struct DenoisedFilm {
-    Denoised picture;
+    integrator::Denoised picture;
     double floor_nits = 0;  ///< a quarter of its mid-grey
     DenoisedError error;    ///< of the whole
     DenoisedError noisy;    ///< of the picture that is not denoised, by the same measure
@@ -43,7 +43,8 @@ struct DenoisedFilm {
 [[nodiscard]] std::string text_of(const DenoisedFilm&);
 
 /// Denoises a film with halves; nothing where `stop` is set meanwhile.
-[[nodiscard]] std::shared_ptr<const DenoisedFilm> denoised_film(const Film&, TbbExecutor&,
+[[nodiscard]] std::shared_ptr<const DenoisedFilm> denoised_film(const Film&,
+                                                                integrator::TbbExecutor&,
                                                                 const std::atomic<bool>& stop);
 
-}  // namespace petzval
+}  // namespace petzval::apps

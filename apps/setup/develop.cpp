@@ -16,7 +16,7 @@
 #include "io/build/build.h"
 #include "io/image/spectral_layout.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Value for an infinite standard error: what reads EXR may scale and subtract it without getting
@@ -49,7 +49,7 @@ float mean_relative_error(const Film& film, uint32_t first) {
     return lit > 0 ? static_cast<float>(sum / double(lit)) : 0.f;
 }
 
-void describe_spectrum(const Film& film, uint32_t first, Metadata& m) {
+void describe_spectrum(const Film& film, uint32_t first, io::Metadata& m) {
     const Bins& bins = film.spectral()->bins();
     m.emplace_back("spectralLayoutVersion", "1.0");
     m.emplace_back("emissiveUnits", "W.m^-2.sr^-1");
@@ -69,7 +69,8 @@ std::vector<std::string> channels_of(const Film& film, bool denoised) {
     std::vector<std::string> names = {"R", "G", "B", "A"};
     if (film.spectral()) {
         const Bins& bins = film.spectral()->bins();
-        for (int i = 0; i < bins.count; ++i) names.push_back(spectral_channel(bins.centre_nm(i)));
+        for (int i = 0; i < bins.count; ++i)
+            names.push_back(io::spectral_channel(bins.centre_nm(i)));
         for (const char* name : {"XYZ.X", "XYZ.Y", "XYZ.Z", "stderr.R", "stderr.G", "stderr.B"})
             names.emplace_back(name);
     }
@@ -133,36 +134,36 @@ float* develop_pixel(const Film& film, const DenoisedFilm* denoised, uint32_t fi
 }
 
 /// Layout of a film's picture.
-PictureLayout layout_of(const Film& film, SampleRange samples, std::vector<std::string> channels,
-                        const Metadata& of_render) {
+io::PictureLayout layout_of(const Film& film, SampleRange samples,
+                            std::vector<std::string> channels, const io::Metadata& of_render) {
     const Rect crop = film.crop();
-    PictureLayout layout{.width = crop.width(),
-                         .height = crop.height(),
-                         .x = crop.x0,
-                         .y = crop.y0,
-                         .full_width = film.full_size().x,
-                         .full_height = film.full_size().y,
-                         .channels = std::move(channels),
-                         .metadata = of_render};
+    io::PictureLayout layout{.width = crop.width(),
+                             .height = crop.height(),
+                             .x = crop.x0,
+                             .y = crop.y0,
+                             .full_width = film.full_size().x,
+                             .full_height = film.full_size().y,
+                             .channels = std::move(channels),
+                             .metadata = of_render};
     layout.metadata.emplace_back(kSamples, fmt::format("{}:{}", samples.first, samples.end));
     return layout;
 }
 
 }  // namespace
 
-Metadata describe_render(const RenderSetup& setup, const RenderJob& job,
-                         const PathOptions& options) {
-    Metadata m{{"Software", program_version()},
-               {"petzval:sceneHash", fmt::format("{:016x}", setup.prepared.hash)},
-               {"petzval:seed", fmt::format("{}", job.seed)},
-               {"petzval:sampler", name_of(job.sampler)},
-               {"petzval:filter", name_of(job.filter.kind())},
-               {"petzval:filterRadius_px", job.filter.radius_px()},
-               {"petzval:maxDepth", options.max_depth},
-               {"petzval:maxClearDepth", options.max_specular_depth},
-               {"petzval:scale", setup.from.scale},
-               {"petzval:transparent", int(options.transparent)},
-               {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}};
+io::Metadata describe_render(const RenderSetup& setup, const integrator::RenderJob& job,
+                             const integrator::PathOptions& options) {
+    io::Metadata m{{"Software", io::program_version()},
+                   {"petzval:sceneHash", fmt::format("{:016x}", setup.prepared.hash)},
+                   {"petzval:seed", fmt::format("{}", job.seed)},
+                   {"petzval:sampler", name_of(job.sampler)},
+                   {"petzval:filter", name_of(job.filter.kind())},
+                   {"petzval:filterRadius_px", job.filter.radius_px()},
+                   {"petzval:maxDepth", options.max_depth},
+                   {"petzval:maxClearDepth", options.max_specular_depth},
+                   {"petzval:scale", setup.from.scale},
+                   {"petzval:transparent", int(options.transparent)},
+                   {"petzval:luminousEfficacy_lm_per_W", kLuminousEfficacy_lm_per_w}};
     if (job.noise) m.emplace_back(kNoiseTarget, static_cast<float>(job.noise->noise));
     if (job.denoised_error) m.emplace_back(kNoiseTarget, static_cast<float>(*job.denoised_error));
     if (job.clamp_nits) m.emplace_back("petzval:clamp_nits", *job.clamp_nits);
@@ -170,13 +171,13 @@ Metadata describe_render(const RenderSetup& setup, const RenderJob& job,
     if (setup.from.exposure_is_auto) m.emplace_back(kFoundExposure, setup.from.exposure_ev);
     describe_camera(setup.from.camera, m);
     for (auto& [name, value] : m)
-        if (auto* text = std::get_if<std::string>(&value)) *text = visible(*text);
+        if (auto* text = std::get_if<std::string>(&value)) *text = io::visible(*text);
     return m;
 }
 
-Picture colours_of(const Film& film, int channels) {
+io::Picture colours_of(const Film& film, int channels) {
     const Rect crop = film.crop();
-    Picture out;
+    io::Picture out;
     out.width = crop.width();
     out.height = crop.height();
     out.x = crop.x0;
@@ -194,9 +195,9 @@ Picture colours_of(const Film& film, int channels) {
     return out;
 }
 
-PictureRows develop(const Film& film, SampleRange samples, const Metadata& of_render,
-                    std::shared_ptr<const DenoisedFilm> denoised) {
-    PictureLayout layout =
+io::PictureRows develop(const Film& film, SampleRange samples, const io::Metadata& of_render,
+                        std::shared_ptr<const DenoisedFilm> denoised) {
+    io::PictureLayout layout =
         layout_of(film, samples, channels_of(film, denoised != nullptr), of_render);
     if (film.spectral()) describe_spectrum(film, samples.first, layout.metadata);
     return {std::move(layout),
@@ -206,8 +207,9 @@ PictureRows develop(const Film& film, SampleRange samples, const Metadata& of_re
             }};
 }
 
-PictureRows denoised_colours(const Film& film, SampleRange samples, const Metadata& of_render,
-                             std::shared_ptr<const DenoisedFilm> denoised) {
+io::PictureRows denoised_colours(const Film& film, SampleRange samples,
+                                 const io::Metadata& of_render,
+                                 std::shared_ptr<const DenoisedFilm> denoised) {
     return {layout_of(film, samples, {"R", "G", "B", "A"}, of_render),
             [&film, crop = film.crop(), denoised](int y, float* row) {
                 for (int x = crop.x0; x < crop.x1; ++x) {
@@ -219,4 +221,4 @@ PictureRows denoised_colours(const Film& film, SampleRange samples, const Metada
             }};
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 #include "integrator/render/render_job.h"
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Metadata name of an exposure that was found, not asked for: of PNG and JPEG alone.
 inline constexpr const char* kFoundExposure = "petzval:exposure_ev";
@@ -22,22 +22,23 @@ inline constexpr const char* kSamples = "petzval:samples";
 
 /// Metadata that say what the pixels of a render follow from: the same for all of its samples and
 /// crops.
-[[nodiscard]] Metadata describe_render(const RenderSetup&, const RenderJob&, const PathOptions&);
+[[nodiscard]] io::Metadata describe_render(const RenderSetup&, const integrator::RenderJob&,
+                                           const integrator::PathOptions&);
 
 /// Picture in memory of what a film has now: R, G, B in nits, and A where four channels are asked
 /// for.
-[[nodiscard]] Picture colours_of(const Film&, int channels);
+[[nodiscard]] io::Picture colours_of(const Film&, int channels);
 
 /// Picture of a film that has these samples: R, G, B, A in nits of the white point; with bins the
 /// channels S0 of io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B;
 /// then the denoised picture and its error, where there is one, and the film's layers as
 /// "layer.channel". Metadata: those of the render, with the samples and what bins mean; no times,
 /// so that equal renders are equal files. The film must outlive the rows.
-[[nodiscard]] PictureRows develop(const Film&, SampleRange, const Metadata&,
-                                  std::shared_ptr<const DenoisedFilm> = {});
+[[nodiscard]] io::PictureRows develop(const Film&, SampleRange, const io::Metadata&,
+                                      std::shared_ptr<const DenoisedFilm> = {});
 
 /// Picture for a display: the denoised R, G, B in nits, and A.
-[[nodiscard]] PictureRows denoised_colours(const Film&, SampleRange, const Metadata&,
-                                           std::shared_ptr<const DenoisedFilm>);
+[[nodiscard]] io::PictureRows denoised_colours(const Film&, SampleRange, const io::Metadata&,
+                                               std::shared_ptr<const DenoisedFilm>);
 
-}  // namespace petzval
+}  // namespace petzval::apps

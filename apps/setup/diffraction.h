@@ -9,7 +9,7 @@
 #include "apps/setup/render_setup.h"
 #include "core/light/small_features.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// What diffraction at the iris does to a picture.
 struct DiffractionEffect {
@@ -51,4 +51,4 @@ struct DiffractionEffect {
 std::optional<std::string> add_diffraction(const SceneRequest&, double focus_m,
                                            const RenderSetup* like, const PreparedScene&, View&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 #include "io/image/display.h"
 #include "io/image/display_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 std::string resolve_display(DisplayRequest& o) {
     const char* from_environment = o.config.empty() ? std::getenv("OCIO") : nullptr;
@@ -17,14 +17,14 @@ std::string resolve_display(DisplayRequest& o) {
     const bool foreign = !o.config.empty();
     try {
         // By its name first, to tell what is wrong with the configuration from what with the view.
-        if (foreign) static_cast<void>(find_view("", o.config));
-    } catch (const InputError& error) {
+        if (foreign) static_cast<void>(io::find_view("", o.config));
+    } catch (const io::InputError& error) {
         throw ValueError(from_environment ? "$OCIO" : "⟨ocio⟩", error.what());
     }
     std::string view;
     try {
-        view = find_view(o.view, o.config);
-    } catch (const InputError& error) {
+        view = io::find_view(o.view, o.config);
+    } catch (const io::InputError& error) {
         throw ValueError("⟨view⟩", error.what());
     }
     if (!foreign) return "";
@@ -32,17 +32,17 @@ std::string resolve_display(DisplayRequest& o) {
                        from_environment ? ", which $OCIO names" : "");
 }
 
-std::vector<NamedFile> input_files(const DisplayRequest& o) {
+std::vector<io::NamedFile> input_files(const DisplayRequest& o) {
     const char* from_environment = std::getenv("OCIO");
     std::filesystem::path config = o.config;
     if (config.empty() && from_environment) config = from_environment;
-    std::vector<NamedFile> files;
+    std::vector<io::NamedFile> files;
     if (config.empty()) return files;
-    for (const auto& file : display_files(config))
+    for (const auto& file : io::display_files(config))
         files.push_back({files.empty() ? "the OpenColorIO configuration"
                                        : "a table of the OpenColorIO configuration",
                          file});
     return files;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

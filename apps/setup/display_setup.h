@@ -8,7 +8,7 @@
 #include "apps/request/render_request.h"
 #include "io/file/overwrite.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Settles the configuration: without one that is asked for it is that which the environment
 /// variable OCIO names. Returns what to tell about it, or nothing. Throws ValueError, also where
@@ -17,6 +17,6 @@ namespace petzval {
 
 /// Files of the configuration that is asked for, or that $OCIO names whether or not it is used:
 /// none of them may be written.
-[[nodiscard]] std::vector<NamedFile> input_files(const DisplayRequest&);
+[[nodiscard]] std::vector<io::NamedFile> input_files(const DisplayRequest&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -5,25 +5,25 @@
 
 #include "camera/setup/equivalent_lens.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 SceneRequest equivalent_thin_lens(SceneRequest request, const RenderSetup& setup) {
     const CameraReport& report = setup.from.camera;
     CameraRequest& camera = request.camera;
     camera.lens = "thin";
-    camera.fov_deg =
-        report.lens.empty()
-            ? report.yfov_deg
-            : equivalent_fov_deg(*setup.view.still, report.focus_plane()).value_or(report.yfov_deg);
+    camera.fov_deg = report.lens.empty()
+                         ? report.yfov_deg
+                         : camera::equivalent_fov_deg(*setup.view.still, report.focus_plane())
+                               .value_or(report.yfov_deg);
     camera.lens_radius_m = report.lens_radius_m;
     camera.sensor_mm = report.sensor_mm;
     camera.focus = FocusDistance{report.focus_m};
     camera.fstop = camera.focal_length_mm = camera.film_distance_mm = std::nullopt;
     camera.fit = Fit::Lens;
-    camera.coating = Coating::Ideal;
+    camera.coating = camera::Coating::Ideal;
     camera.ghosts = GhostUse::Auto;
-    camera.precision = Precision::Float;
-    camera.focus_by = FocusBy::Paraxial;
+    camera.precision = camera::Precision::Float;
+    camera.focus_by = camera::FocusBy::Paraxial;
     camera.glasses.clear();
     return request;
 }
@@ -35,7 +35,7 @@ SceneRequest equivalent_pinhole(SceneRequest request, const RenderSetup& setup) 
     camera.lens_radius_m = std::nullopt;
     camera.focus = std::nullopt;
     camera.aperture = std::nullopt;
-    camera.aperture_scale = ApertureScale::EqualArea;
+    camera.aperture_scale = camera::ApertureScale::EqualArea;
     camera.iris_sampling = std::nullopt;
     return request;
 }
@@ -51,4 +51,4 @@ SceneRequest resolved_request(const RenderSetup& setup) {
     return request;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

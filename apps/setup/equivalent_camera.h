@@ -4,7 +4,7 @@
 
 #include "apps/setup/render_setup.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// A thin lens in the entrance pupil of the setup's lens: with its iris and focus, its angle of
 /// view at the plane of focus (a lens that is focused near sees less than its focal length says),
@@ -18,4 +18,4 @@ namespace petzval {
 /// the distance in focus.
 [[nodiscard]] SceneRequest resolved_request(const RenderSetup&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

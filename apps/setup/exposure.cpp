@@ -8,12 +8,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "apps/setup/tracer.h"
 #include "core/sampling/prepass_seed.h"
 #include "integrator/path/path.h"
+#include "integrator/prepass/pilot_batch.h"
 #include "integrator/prepass/pilot_pixels.h"
-#include "integrator/render/render.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr double kMidGrey = 0.18;
@@ -55,24 +56,23 @@ struct Seen {
     }
 };
 
-Seen look(const RenderSetup& setup, const RenderJob& job, const PathTracer<>& tracer,
-          const PilotTurn& turn, TbbExecutor& executor) {
+Seen look(const RenderSetup& setup, const integrator::RenderJob& job,
+          const integrator::PathTracer<>& tracer, const PilotTurn& turn,
+          integrator::TbbExecutor& executor) {
     const V2i size = setup.from.asked.size;
-    const auto pixels = pilot_pixels(size, turn.pixels, job.seed);
+    const integrator::PilotBatch batch{
+        size,       integrator::pilot_pixels(size, turn.pixels, job.seed),
+        0,          turn.samples,
+        {job.seed}, {Aov::Depth}};
     struct Pixel {
         double luminance;
         bool scene;
     };
-    std::vector<Pixel> found(pixels.size());
-    std::vector<PathStats> stats(static_cast<size_t>(executor.threads()));
-    executor.run(static_cast<int>(pixels.size()), [&](int task, int worker) {
-        const auto [x, y] = pixels[static_cast<size_t>(task)];
-        Film film(size, {x, y, x + 1, y + 1}, {Aov::Depth});
-        render_samples(tracer, *setup.view.camera, job, {{x, y}, 0, turn.samples}, film,
-                       stats[static_cast<size_t>(worker)]);
-        found[static_cast<size_t>(task)] = {shown_luminance(film.colour(x, y)),
-                                            film.aov(x, y, 0).x > 0};
-    });
+    std::vector<Pixel> found(batch.pixels.size());
+    render_pilot(tracer, *setup.view.camera, job, batch, executor,
+                 [&](const integrator::PilotFilm& film) {
+                     found[film.pixel] = {shown_luminance(film.colour), film.layer.x > 0};
+                 });
     Seen seen;
     for (const Pixel& pixel : found) {
         if (!(pixel.luminance > 0)) continue;
@@ -102,13 +102,11 @@ FoundExposure exposure_for(std::vector<double> luminances) {
     return {static_cast<float>((tenths + 0.0) / 10), average};
 }
 
-FoundExposure find_exposure(const RenderSetup& setup, const RenderJob& job,
-                            const PathOptions& options, TbbExecutor& executor) {
-    PathOptions with_background = options;
-    with_background.visible_background = setup.view.visible_background;
-    const PathTracer<> tracer(*setup.prepared.scene, *setup.prepared.bvh, *setup.prepared.lights,
-                              with_background);
-    RenderJob pilot;
+FoundExposure find_exposure(const RenderSetup& setup, const integrator::RenderJob& job,
+                            const integrator::PathOptions& options,
+                            integrator::TbbExecutor& executor) {
+    const integrator::PathTracer<> tracer = tracer_of(setup, options);
+    integrator::RenderJob pilot;
     pilot.sampler = job.sampler;
     pilot.filter = job.filter;
     pilot.observer = setup.view.observer;
@@ -161,4 +159,4 @@ std::optional<std::string> exposure_advice(Brightness brightness, const FoundExp
         white && !white_cause.empty() ? ". " + white_cause : "");
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -12,7 +12,7 @@
 #include "integrator/render/executor.h"
 #include "integrator/render/render_job.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Exposure for a picture, from what a pilot saw.
 struct FoundExposure {
@@ -30,8 +30,8 @@ struct FoundExposure {
 /// from crop, samples or threads. Pixels count that show something of the scene; the background
 /// counts where hardly any do. What a pilot of 2048 pixels does not meet is looked for in up to
 /// 2^20. Uses job.seed, job.sampler and job.filter.
-[[nodiscard]] FoundExposure find_exposure(const RenderSetup&, const RenderJob&, const PathOptions&,
-                                          TbbExecutor&);
+[[nodiscard]] FoundExposure find_exposure(const RenderSetup&, const integrator::RenderJob&,
+                                          const integrator::PathOptions&, integrator::TbbExecutor&);
 
 /// Brightness of a picture as PNG and JPEG show it.
 enum class Brightness : uint8_t { Normal, Black, AlmostBlack, MostlyBlack, AlmostWhite };
@@ -47,4 +47,4 @@ enum class Brightness : uint8_t { Normal, Black, AlmostBlack, MostlyBlack, Almos
                                                          float exposure_ev,
                                                          const std::string& white_cause = "");
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,16 +8,16 @@
 #include "integrator/render/executor.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
-std::shared_ptr<const LensCamera> traced_lens(const View& view) {
-    return std::dynamic_pointer_cast<const LensCamera>(view.still);
+std::shared_ptr<const camera::LensCamera> traced_lens(const View& view) {
+    return std::dynamic_pointer_cast<const camera::LensCamera>(view.still);
 }
 
-std::shared_ptr<const GhostDraws> ghost_draws(const GhostOptics& optics,
-                                              const PreparedScene& prepared,
-                                              const std::function<void()>& next_step) {
+std::shared_ptr<const camera::GhostDraws> ghost_draws(const camera::GhostOptics& optics,
+                                                      const PreparedScene& prepared,
+                                                      const std::function<void()>& next_step) {
     // A lamp that is hidden from the lens, or behind it, may show a part: it comes last.
     constexpr double kHidden = 0.01;
     std::vector<SmallFeature> things = small_features_of(*prepared.scene);
@@ -25,9 +25,10 @@ std::shared_ptr<const GhostDraws> ghost_draws(const GhostOptics& optics,
         if (!shines_in(thing, optics.camera().pose(), *prepared.bvh)) thing.radiance *= kHidden;
     const auto run = [&](size_t count, const std::function<void(size_t)>& task) {
         next_step();
-        run_here(count, task);
+        integrator::run_here(count, task);
     };
-    return std::make_shared<const GhostDraws>(optics, GhostRegions(optics, things, run), run);
+    return std::make_shared<const camera::GhostDraws>(
+        optics, camera::GhostRegions(optics, things, run), run);
 }
 
 }  // namespace
@@ -37,19 +38,19 @@ void add_ghosts(const CameraRequest& asked, const RenderSetup* like, const Prepa
     const auto lens = traced_lens(view);
     const bool only = asked.ghosts == GhostUse::Only;
     if (!lens || asked.ghosts == GhostUse::Off) return;
-    if (asked.coating == Coating::Ideal && !only) return;
-    GhostOptics optics(lens);
+    if (asked.coating == camera::Coating::Ideal && !only) return;
+    camera::GhostOptics optics(lens);
     if (optics.pairs().empty()) {
         if (!only) return;
-        throw ArgumentError("⟨ghosts⟩ only", "",
-                            "shows light that two surfaces of the lens reflect, and here none "
-                            "do: give ⟨coating⟩=year or another, and a lens of more surfaces");
+        throw io::ArgumentError("⟨ghosts⟩ only", "",
+                                "shows light that two surfaces of the lens reflect, and here none "
+                                "do: give ⟨coating⟩=year or another, and a lens of more surfaces");
     }
     const bool same = like && like->view.ghosts && like->prepared.bvh == prepared.bvh &&
                       like->view.ghosts->are_of(optics);
     view.ghosts = same ? like->view.ghosts : ghost_draws(optics, prepared, next_step);
-    view.camera = std::make_shared<GhostCamera>(only ? nullptr : std::move(view.camera),
-                                                std::move(optics), view.ghosts);
+    view.camera = std::make_shared<camera::GhostCamera>(only ? nullptr : std::move(view.camera),
+                                                        std::move(optics), view.ghosts);
 }
 
 size_t lamps_into_lens(const View& view, std::span<const SmallFeature> things, const Bvh& bvh) {
@@ -62,10 +63,10 @@ size_t lamps_into_lens(const View& view, std::span<const SmallFeature> things, c
 
 std::optional<std::string> ghost_remark(const CameraRequest& asked, const View& view,
                                         std::span<const SmallFeature> things, const Bvh& bvh) {
-    if (asked.coating != Coating::Ideal || asked.ghosts == GhostUse::Off) return {};
+    if (asked.coating != camera::Coating::Ideal || asked.ghosts == GhostUse::Off) return {};
     if (lamps_into_lens(view, things, bvh) == 0) return {};
     return "a lamp shines into the lens, whose surfaces reflect nothing here: ⟨coating⟩=year shows "
            "its ghosts";
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

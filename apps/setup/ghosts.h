@@ -10,7 +10,7 @@
 #include "apps/setup/render_setup.h"
 #include "core/light/small_features.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Adds to the camera that renders the ghosts of its lens, beside its own rays or instead of them,
 /// where there are any to show. What is the same in another setup of the scene is taken from there;
@@ -27,4 +27,4 @@ void add_ghosts(const CameraRequest&, const RenderSetup* like, const PreparedSce
 [[nodiscard]] std::optional<std::string> ghost_remark(const CameraRequest&, const View&,
                                                       std::span<const SmallFeature>, const Bvh&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

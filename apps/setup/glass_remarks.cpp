@@ -6,19 +6,19 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr size_t kMostNamed = 3;
 constexpr const char* kMakeThin =
     R"(make the glass thin by {"petzval": {"solid": false}} in its extras)";
 
-std::string name_of(const Scene& scene, uint32_t material) {
+std::string label_of(const Scene& scene, uint32_t material) {
     const std::string& name = scene.materials[material].name;
     return name.empty() ? fmt::format("material {}", material) : fmt::format("\"{}\"", name);
 }
 
-std::string name_of(VolumeFault fault) {
+std::string label_of(VolumeFault fault) {
     switch (fault) {
         case VolumeFault::None:
             break;
@@ -34,17 +34,17 @@ std::string name_of(VolumeFault fault) {
     return "closed";
 }
 
-std::string name_of(const LostLight& lost) {
+std::string label_of(const integrator::LostLight& lost) {
     switch (lost.kind) {
-        case LostLight::Kind::Point:
+        case integrator::LostLight::Kind::Point:
             return fmt::format("point light {}", lost.light);
-        case LostLight::Kind::Spot:
+        case integrator::LostLight::Kind::Spot:
             return fmt::format("spot light {}", lost.light);
-        case LostLight::Kind::Sun:
+        case integrator::LostLight::Kind::Sun:
             return fmt::format("directional light {}", lost.light);
-        case LostLight::Kind::Lamp:
+        case integrator::LostLight::Kind::Lamp:
             return fmt::format("a lamp of {:.2g} mm", 1e3 * lost.size);
-        case LostLight::Kind::SkySpot:
+        case integrator::LostLight::Kind::SkySpot:
             break;
     }
     return fmt::format("a spot of the sky of {:.2g}°", lost.size * 180 / double(kPi));
@@ -67,8 +67,8 @@ std::string faulty_volumes_text(const Scene& scene, const std::vector<uint32_t>&
         "outwards, or {}",
         listed(faulty,
                [&](uint32_t m) {
-                   return fmt::format("{} ({})", name_of(scene, m),
-                                      name_of(scene.materials[m].volume_fault));
+                   return fmt::format("{} ({})", label_of(scene, m),
+                                      label_of(scene.materials[m].volume_fault));
                }),
         kMakeThin);
 }
@@ -79,26 +79,27 @@ std::string thin_bodies_text(const Scene& scene, const std::vector<uint32_t>& th
         "solid glass give the material a thickness (KHR_materials_volume; in Blender the input "
         "Thickness of a node group named \"glTF Material Output\"), or {{\"petzval\": "
         "{{\"solid\": true}}}} in its extras; false there keeps it thin without this message",
-        listed(thin, [&](uint32_t m) { return name_of(scene, m); }));
+        listed(thin, [&](uint32_t m) { return label_of(scene, m); }));
 }
 
-std::string lost_light_text(const Scene& scene, const std::vector<LostLight>& lost) {
-    std::vector<LostLight> by_share = lost;
+std::string lost_light_text(const Scene& scene, const std::vector<integrator::LostLight>& lost) {
+    std::vector<integrator::LostLight> by_share = lost;
     std::stable_sort(by_share.begin(), by_share.end(),
                      [](const auto& a, const auto& b) { return a.share > b.share; });
     return fmt::format(
         "no path finds light that comes through solid glass, or hardly one: {}; what it would "
         "light is too dark; give the light a size or a larger one, or {}",
         listed(by_share,
-               [&](const LostLight& l) {
-                   return fmt::format("{} behind {}", name_of(l), name_of(scene, l.glass));
+               [&](const integrator::LostLight& l) {
+                   return fmt::format("{} behind {}", label_of(l), label_of(scene, l.glass));
                }),
         kMakeThin);
 }
 
 }  // namespace
 
-std::vector<std::string> glass_remarks(const Scene& scene, const std::vector<LostLight>& lost) {
+std::vector<std::string> glass_remarks(const Scene& scene,
+                                       const std::vector<integrator::LostLight>& lost) {
     std::vector<uint32_t> faulty, thin;
     for (uint32_t m = 0; m < scene.materials.size(); ++m) {
         if (scene.materials[m].volume_fault != VolumeFault::None) faulty.push_back(m);
@@ -111,4 +112,4 @@ std::vector<std::string> glass_remarks(const Scene& scene, const std::vector<Los
     return remarks;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

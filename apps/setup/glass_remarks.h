@@ -9,11 +9,12 @@
 #include "core/scene/scene.h"
 #include "integrator/prepass/lost_light.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// A remark on thin glass in the shape of a body, one on materials that refract and are no closed
 /// volumes, and one on light that no path finds: which, behind what, and what to do. None where
 /// there is nothing of the kind.
-[[nodiscard]] std::vector<std::string> glass_remarks(const Scene&, const std::vector<LostLight>&);
+[[nodiscard]] std::vector<std::string> glass_remarks(const Scene&,
+                                                     const std::vector<integrator::LostLight>&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,12 +4,12 @@
 #include "io/base/error.h"
 #include "io/file/assets.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 namespace fs = std::filesystem;
 
-std::vector<NamedFile> input_files(const SceneRequest& r) {
-    std::vector<NamedFile> files{{"the scene", r.scene}};
+std::vector<io::NamedFile> input_files(const SceneRequest& r) {
+    std::vector<io::NamedFile> files{{"the scene", r.scene}};
     const auto add = [&](const char* role, const auto& path) {
         if (path && !path->empty()) files.push_back({role, *path});
     };
@@ -22,25 +22,25 @@ std::vector<NamedFile> input_files(const SceneRequest& r) {
     return files;
 }
 
-std::vector<NamedFile> input_files(const GltfFile& file, const fs::path& scene) {
-    std::vector<NamedFile> files;
+std::vector<io::NamedFile> input_files(const io::GltfFile& file, const fs::path& scene) {
+    std::vector<io::NamedFile> files;
     for (const fs::path& one : file.files) files.push_back({"a file of the scene", one});
     if (file.extras.sky)
         files.push_back({"the sky of the scene", scene.parent_path() / *file.extras.sky});
-    for (const GltfCamera& camera : file.cameras)
+    for (const io::GltfCamera& camera : file.cameras)
         for (const auto& name : {camera.extras.lens, camera.extras.aperture})
             if (name) files.push_back({kCameraFile, scene.parent_path() / *name});
     return files;
 }
 
-std::vector<NamedFile> own_files() {
-    std::vector<NamedFile> files;
+std::vector<io::NamedFile> own_files() {
+    std::vector<io::NamedFile> files;
     for (const char* folder : {"color", "glass", "lenses", "spectra"}) try {
-            for (const auto& entry : fs::directory_iterator(asset(folder)))
+            for (const auto& entry : fs::directory_iterator(io::asset(folder)))
                 files.push_back({"a file of Petzval itself", entry.path()});
-        } catch (const InputError&) {  // not installed: whoever needs it will say so
+        } catch (const io::InputError&) {  // not installed: whoever needs it will say so
         }
     return files;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

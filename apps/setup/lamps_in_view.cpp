@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/setup/lamps_in_view.h"
 
-namespace petzval {
+namespace petzval::apps {
 
-bool shines_in(const SmallFeature& lamp, const Pose& pose, const Bvh& bvh) {
+bool shines_in(const SmallFeature& lamp, const camera::Pose& pose, const Bvh& bvh) {
     constexpr float kLeastCosine = 0.17f;  // light from 80 degrees and more hardly enters
     const V3f to = lamp.at_infinity ? lamp.centre : lamp.centre - pose.origin;
     const float away = to.length();
@@ -16,4 +16,4 @@ bool shines_in(const SmallFeature& lamp, const Pose& pose, const Bvh& bvh) {
     return !bvh.intersect(ray);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

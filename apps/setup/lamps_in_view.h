@@ -6,9 +6,9 @@
 #include "core/light/small_features.h"
 #include "core/traversal/bvh.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Whether a lamp in front of the camera is seen from the middle of its entrance pupil.
-[[nodiscard]] bool shines_in(const SmallFeature& lamp, const Pose&, const Bvh&);
+[[nodiscard]] bool shines_in(const SmallFeature& lamp, const camera::Pose&, const Bvh&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

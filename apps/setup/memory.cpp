@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace petzval {
+namespace petzval::apps {
 
 std::optional<std::string> memory_shortage(double needed_bytes, uint64_t there_bytes) {
     const auto there = static_cast<double>(there_bytes);
@@ -15,4 +15,4 @@ std::optional<std::string> memory_shortage(double needed_bytes, uint64_t there_b
                        there * 0x1p-30);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

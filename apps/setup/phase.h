@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <functional>
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Loading: files are read. Bvh: the search trees of triangles and lights are built. Planning: the
 /// camera is focused, and what the user left open is chosen. Denoising: only where it is asked for.
@@ -19,4 +19,4 @@ inline constexpr std::array<const char*, static_cast<size_t>(Phase::Count)> kPha
 /// Receives each phase when it begins, and Planning before each task of it, from any thread.
 using PhaseSink = std::function<void(Phase)>;
 
-}  // namespace petzval
+}  // namespace petzval::apps

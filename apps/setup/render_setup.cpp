@@ -29,7 +29,7 @@
 #include "io/gltf/gltf.h"
 #include "io/image/environment.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -42,7 +42,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 // Lights a scene by the studio where nobody asked for light and the file has none, or too little.
-void add_missing_light(SceneRequest& request, const Scene& scene, const Notice& notice) {
+void add_missing_light(SceneRequest& request, const Scene& scene, const io::Notice& notice) {
     if (request.environment || request.background || !scene.sky.black()) return;
     const OwnLight own = own_light(scene);
     if (own == OwnLight::Enough) return;
@@ -61,14 +61,15 @@ void add_missing_light(SceneRequest& request, const Scene& scene, const Notice& 
 }
 
 // Takes the sky that the file asks for, where the user asks for none.
-void take_sky_of_file(const SceneExtras& file, SceneRequest& request, const Notice& notice) {
+void take_sky_of_file(const io::SceneExtras& file, SceneRequest& request,
+                      const io::Notice& notice) {
     if (!file.sky || request.environment || request.background) return;
     const auto folder = request.scene.parent_path(), path = folder / *file.sky;
     const auto refuse = [&](const char* why) {
-        return InputError(request.scene.string(), file.path + "/sky",
-                          fmt::format("\"{}\" {}", printable(*file.sky), why));
+        return io::InputError(request.scene.string(), file.path + "/sky",
+                              fmt::format("\"{}\" {}", io::printable(*file.sky), why));
     };
-    if (request.scope == FileScope::Confined && !lies_within(path, folder))
+    if (request.scope == io::FileScope::Confined && !io::lies_within(path, folder))
         throw refuse("lies outside the folder of the scene, and ⟨confine⟩ allows no file there");
     if (std::filesystem::path(*file.sky).is_absolute())
         throw refuse("is an absolute path, which is not read; put the file beside the scene");
@@ -77,20 +78,20 @@ void take_sky_of_file(const SceneExtras& file, SceneRequest& request, const Noti
     notice(
         fmt::format("the scene asks for its sky, {}, turned by {:g} degrees (⟨env⟩ FILE or "
                     "⟨background⟩ R,G,B give another)",
-                    printable(*file.sky), file.sky_rotation_deg));
+                    io::printable(*file.sky), file.sky_rotation_deg));
 }
 
-Sky sky_of(const SceneRequest& request, const Notice& notice, PictureBudget& pictures) {
+Sky sky_of(const SceneRequest& request, const io::Notice& notice, io::PictureBudget& pictures) {
     if (request.environment == kStudioLight)
         return studio_sky(request.environment_rotate_deg, request.environment_strength);
     if (request.environment)
-        return load_sky(*request.environment, request.environment_rotate_deg,
-                        request.environment_strength, notice, pictures);
+        return io::load_sky(*request.environment, request.environment_rotate_deg,
+                            request.environment_strength, notice, pictures);
     return request.background ? Sky::uniform(*request.background) : Sky();
 }
 
 // Points of a shutter curve as time:open, the time as a share of the whole.
-std::string text_of(const ShutterCurve& curve) {
+std::string text_of(const camera::ShutterCurve& curve) {
     std::string text;
     for (const auto& [time, open] : curve.points)
         text += fmt::format("{}{:.6g}:{:.6g}", text.empty() ? "" : ",", time, open);
@@ -102,9 +103,9 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
     std::vector<std::pair<std::string, std::string>> m;
     m.emplace_back("petzval:scene", request.scene.filename().string());
     if (const auto& variant = request.choices.variant)
-        m.emplace_back("petzval:variant", visible(*variant));
+        m.emplace_back("petzval:variant", io::visible(*variant));
     if (const auto& name = request.choices.scene)
-        m.emplace_back("petzval:sceneName", visible(*name));
+        m.emplace_back("petzval:sceneName", io::visible(*name));
     if (const auto& radius_m = request.choices.point_line_radius_m)
         m.emplace_back("petzval:pointLineRadius_m", fmt::format("{:.9g}", *radius_m));
     if (const auto& animation = request.choices.animation) {
@@ -116,7 +117,7 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
         }
         if (!animation->names.empty())
             m.emplace_back("petzval:animations",
-                           visible(fmt::format("{}", fmt::join(animation->names, ", "))));
+                           io::visible(fmt::format("{}", fmt::join(animation->names, ", "))));
     }
     if (request.environment) {
         m.emplace_back("petzval:environment", environment);
@@ -125,7 +126,8 @@ std::vector<std::pair<std::string, std::string>> describe(const SceneRequest& re
         m.emplace_back("petzval:environmentStrength",
                        fmt::format("{:.9g}", request.environment_strength));
     }
-    if (const auto& b = request.background) m.emplace_back("petzval:background", with_commas(*b));
+    if (const auto& b = request.background)
+        m.emplace_back("petzval:background", io::with_commas(*b));
     m.emplace_back("petzval:lightChoice", name_of(request.lights()));
     m.emplace_back("petzval:targets", name_of(request.targets));
     m.emplace_back("petzval:traversal", name_of(request.traversal));
@@ -143,17 +145,18 @@ bool same_scene(const SceneRequest& a, const SceneRequest& b) {
            a.environment_strength == b.environment_strength && same(a.background, b.background);
 }
 
-GltfFile load_file(const SceneRequest& request, PictureBudget& pictures, FrameReuse* frames) {
-    if (!frames) return load_gltf(request.scene, request.scope, pictures, request.choices);
+io::GltfFile load_file(const SceneRequest& request, io::PictureBudget& pictures,
+                       FrameReuse* frames) {
+    if (!frames) return io::load_gltf(request.scene, request.scope, pictures, request.choices);
     auto& reader = frames->reader;
     if (!reader)
-        reader = std::make_unique<GltfReader>(request.scene, request.scope, request.choices);
+        reader = std::make_unique<io::GltfReader>(request.scene, request.scope, request.choices);
     return reader->load(pictures,
                         request.choices.animation ? request.choices.animation->time_s : 0);
 }
 
 // Takes the sky that is asked for; of a sequence, that of the frame before.
-void take_sky(const SceneRequest& request, const Notice& notice, PreparedScene& out, Sky& sky,
+void take_sky(const SceneRequest& request, const io::Notice& notice, PreparedScene& out, Sky& sky,
               Scene* before, const std::string& text_before) {
     if (before && !text_before.empty()) {
         sky = std::move(before->sky);
@@ -164,32 +167,32 @@ void take_sky(const SceneRequest& request, const Notice& notice, PreparedScene& 
     if (request.environment)
         out.environment_text = request.environment == kStudioLight
                                    ? kStudioLight
-                                   : name_and_hash(*request.environment);
+                                   : io::name_and_hash(*request.environment);
 }
 
 // The scene with its sky, not yet its BVH and lights.
-PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frames) {
+PreparedScene load(SceneRequest request, const io::Notice& notice, FrameReuse* frames) {
     PreparedScene out;
     // Taken out of the sequence: where this frame fails, the next must not find what is left of it.
     std::shared_ptr<Scene> before = frames ? std::exchange(frames->before, nullptr) : nullptr;
     if (before.use_count() > 1) before.reset();  // somebody looks at it still
     if (before) frames->reader->give_back(std::move(before->images));
     out.pictures = request.pictures();
-    GltfFile file = load_file(request, out.pictures, frames);
+    io::GltfFile file = load_file(request, out.pictures, frames);
     check_camera_files(request.scene, request.scope, file.cameras);
     out.files = input_files(file, request.scene);
-    refuse_overwriting(request.outputs, out.files);
+    io::refuse_overwriting(request.outputs, out.files);
     for (const std::string& warning : file.warnings) notice("warning: " + warning);
     for (const std::string& remark : file.remarks) notice(remark);
     auto scene = std::make_shared<Scene>(std::move(file.scene));
     out.hash = file.hash;
-    out.cameras = std::make_shared<std::vector<GltfCamera>>(std::move(file.cameras));
+    out.cameras = std::make_shared<std::vector<io::GltfCamera>>(std::move(file.cameras));
     take_sky_of_file(file.extras, request, notice);
     add_missing_light(request, *scene, notice);
     out.environment = request.environment;
     out.environment_rotate_deg = request.environment_rotate_deg;
     out.extras = std::move(file.extras);
-    out.holds = std::make_shared<GltfSummary>(std::move(file.holds));
+    out.holds = std::make_shared<io::GltfSummary>(std::move(file.holds));
     out.lamp_unit_doubt = std::move(file.lamp_unit_doubt);
     if (request.environment || request.background)  // instead of the file's own
         take_sky(request, notice, out, scene->sky, before.get(),
@@ -206,40 +209,42 @@ PreparedScene load(SceneRequest request, const Notice& notice, FrameReuse* frame
 }
 
 /// Small bright things to which a camera sends rays, where that pays; nullptr: none.
-std::shared_ptr<const TargetGrid> targets_of(TargetCamera& camera, const Camera& still, V2i size_px,
-                                             const PreparedScene& prepared,
-                                             std::vector<SmallFeature> features,
-                                             const std::function<void()>& next_step) {
+std::shared_ptr<const camera::TargetGrid> targets_of(camera::TargetCamera& camera,
+                                                     const camera::Camera& still, V2i size_px,
+                                                     const PreparedScene& prepared,
+                                                     std::vector<SmallFeature> features,
+                                                     const std::function<void()>& next_step) {
     const Scene& scene = *prepared.scene;
     const std::vector<SmallFeature> images =
-        highlights(still, scene, *prepared.bvh, size_px, features);
+        integrator::highlights(still, scene, *prepared.bvh, size_px, features);
     features.insert(features.end(), images.begin(), images.end());
     next_step();
-    camera.set_targets(find_targets(camera, size_px, features, next_step));
+    camera.set_targets(camera::find_targets(camera, size_px, features, next_step));
     next_step();
-    return targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px);
+    return integrator::targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px);
 }
 
 /// A camera that the shutter of a view moves; the same where nothing moves.
-std::shared_ptr<const Camera> moved(std::shared_ptr<const Camera> camera, const View& view) {
+std::shared_ptr<const camera::Camera> moved(std::shared_ptr<const camera::Camera> camera,
+                                            const View& view) {
     if (!view.shutter) return camera;
-    return std::make_shared<MovingCamera>(std::move(camera), view.shutter);
+    return std::make_shared<camera::MovingCamera>(std::move(camera), view.shutter);
 }
 
 /// The camera that renders, from the one that stands still: aimed at targets and moved by a
 /// shutter, where there are any. Returns the small features among which targets were looked for.
 std::vector<SmallFeature> compose_camera(const SceneRequest& asked, const RenderSetup* like,
                                          const PreparedScene& prepared, double focus_m, View& view,
-                                         const Notice& notice,
+                                         const io::Notice& notice,
                                          const std::function<void()>& next_step) {
     std::vector<SmallFeature> features;
     view.camera = view.still;
     if (asked.targets == TargetUse::Auto)
-        if (auto aims = target_camera(view.still)) {
+        if (auto aims = camera::target_camera(view.still)) {
             const bool same = like && like->view.still &&
                               like->from.asked.targets == TargetUse::Auto &&
                               like->from.asked.size == asked.size &&
-                              has_same_rays(*view.still, *like->view.still);
+                              camera::has_same_rays(*view.still, *like->view.still);
             if (!same) features = small_features_of(*prepared.scene, kMostTargets);
             view.targets =
                 same ? like->view.targets
@@ -255,7 +260,7 @@ std::vector<SmallFeature> compose_camera(const SceneRequest& asked, const Render
     return features;
 }
 
-RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseSink& begins,
+RenderSetup set_up(const SceneRequest& asked, const io::Notice& notice, const PhaseSink& begins,
                    const RenderSetup* like, FrameReuse* frames) {
     const auto begin = [&](Phase phase) {
         if (begins) begins(phase);
@@ -294,7 +299,7 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     if (!shares || asked.lights() != like->from.asked.lights())
         prepared.lights = std::make_shared<const LightChoice>(scene, request.lights());
     if (!shares) {
-        prepared.lost_light = lost_light(scene, *prepared.bvh);
+        prepared.lost_light = integrator::lost_light(scene, *prepared.bvh);
         for (const std::string& remark : glass_remarks(scene, prepared.lost_light))
             notice("warning: " + remark);
     }
@@ -311,7 +316,7 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
     const auto next_step = [&] { begin(Phase::Planning); };
     next_step();
     if (prepared.lights->divides())
-        prepared.lights = std::make_shared<const LightChoice>(fitted_by_pilot(
+        prepared.lights = std::make_shared<const LightChoice>(integrator::fitted_by_pilot(
             *prepared.lights, scene, *prepared.bvh, *moved(setup.view.still, setup.view),
             setup.view.observer, request.size));
     next_step();
@@ -327,23 +332,24 @@ RenderSetup set_up(const SceneRequest& asked, const Notice& notice, const PhaseS
 
 }  // namespace
 
-RenderSetup set_up_render(const SceneRequest& asked, const Notice& notice, const PhaseSink& begins,
-                          FrameReuse* frames) {
-    return naming_file(asked.scene.string(),
-                       [&] { return set_up(asked, notice, begins, nullptr, frames); });
+RenderSetup set_up_render(const SceneRequest& asked, const io::Notice& notice,
+                          const PhaseSink& begins, FrameReuse* frames) {
+    return io::naming_file(asked.scene.string(),
+                           [&] { return set_up(asked, notice, begins, nullptr, frames); });
 }
 
 std::unique_ptr<NextFrame> set_up_velocity(const RenderSetup& setup, double fps) {
     const SceneRequest& asked = setup.from.asked;
     const std::string file = asked.scene.string();
     if (!asked.choices.animation)
-        throw ArgumentError(file, "", "⟨aov⟩ velocity needs a time: ⟨at⟩ 1s or ⟨frames⟩ 1:48");
-    GltfChoices choices = asked.choices;
+        throw io::ArgumentError(file, "", "⟨aov⟩ velocity needs a time: ⟨at⟩ 1s or ⟨frames⟩ 1:48");
+    io::GltfChoices choices = asked.choices;
     choices.animation->time_s += 1 / fps;
-    PictureBudget pictures =
-        asked.picture_memory_bytes ? PictureBudget(*asked.picture_memory_bytes) : PictureBudget();
+    io::PictureBudget pictures = asked.picture_memory_bytes
+                                     ? io::PictureBudget(*asked.picture_memory_bytes)
+                                     : io::PictureBudget();
     auto out = std::make_unique<NextFrame>();
-    out->file = load_gltf(asked.scene, asked.scope, pictures, choices);
+    out->file = io::load_gltf(asked.scene, asked.scope, pictures, choices);
     const Scene &now = *setup.prepared.scene, &next = out->file.scene;
     const auto triangles = [](const Scene& scene, size_t i) {
         return scene.meshes[scene.instances[i].mesh].triangles.size();
@@ -353,24 +359,25 @@ std::unique_ptr<NextFrame> set_up_velocity(const RenderSetup& setup, double fps)
     for (size_t i = 0; same && i < now.instances.size(); ++i)
         same = triangles(now, i) == triangles(next, i);
     if (!same)
-        throw ArgumentError(file, "",
-                            "⟨aov⟩ velocity: the next frame shows other meshes, so that nobody can "
-                            "tell how they move");
-    const auto curve = asked.camera.shutter_curve.value_or(ShutterCurve::box());
+        throw io::ArgumentError(
+            file, "",
+            "⟨aov⟩ velocity: the next frame shows other meshes, so that nobody can "
+            "tell how they move");
+    const auto curve = asked.camera.shutter_curve.value_or(camera::ShutterCurve::box());
     const auto& of_file = setup.view.of_file;
-    const GltfCamera* const before = of_file ? &(*setup.prepared.cameras)[*of_file] : nullptr;
-    const GltfCamera* const after = of_file ? &out->file.cameras[*of_file] : nullptr;
+    const io::GltfCamera* const before = of_file ? &(*setup.prepared.cameras)[*of_file] : nullptr;
+    const io::GltfCamera* const after = of_file ? &out->file.cameras[*of_file] : nullptr;
     const M44f middle = before ? before->to_world : M44f();
-    out->velocity = std::make_unique<Velocity>(now, next, *setup.view.finder, asked.size,
-                                               shutter_with(curve, before, middle),
-                                               shutter_with(curve, after, middle));
+    out->velocity = std::make_unique<integrator::Velocity>(
+        now, next, *setup.view.finder, asked.size, shutter_with(curve, before, middle),
+        shutter_with(curve, after, middle));
     return out;
 }
 
-RenderSetup set_up_view(const RenderSetup& like, const SceneRequest& asked, const Notice& notice,
-                        const PhaseSink& begins) {
-    return naming_file(asked.scene.string(),
-                       [&] { return set_up(asked, notice, begins, &like, nullptr); });
+RenderSetup set_up_view(const RenderSetup& like, const SceneRequest& asked,
+                        const io::Notice& notice, const PhaseSink& begins) {
+    return io::naming_file(asked.scene.string(),
+                           [&] { return set_up(asked, notice, begins, &like, nullptr); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

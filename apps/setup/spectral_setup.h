@@ -12,7 +12,7 @@
 #include "core/spectrum/observer.h"
 #include "io/base/notice.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 enum class DecidedBy {
     User,     ///< --spectral says
@@ -42,6 +42,6 @@ struct SpectralSetup {
 /// that is not as it should be, ArgumentError for bins that a glass of the scene is not known for.
 [[nodiscard]] SpectralSetup set_up_spectra(const SpectralRequest&, const Scene&,
                                            const std::string& dispersive_lens, bool diffracts,
-                                           const Notice& notice);
+                                           const io::Notice& notice);
 
-}  // namespace petzval
+}  // namespace petzval::apps

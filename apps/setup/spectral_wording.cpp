@@ -6,7 +6,7 @@
 
 #include "io/base/format.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 std::string text_of(const WavelengthReason& reason) {
@@ -47,9 +47,10 @@ std::string because(const SpectralDecision& decision) {
         case DecidedBy::User:
             return "⟨spectral⟩ says";
         case DecidedBy::Plan:
-            return decision.wavelengths ? reasons
-                                        : fmt::format("it is off by {} at most, though {}",
-                                                      percent(decision.predicted_error), reasons);
+            return decision.wavelengths
+                       ? reasons
+                       : fmt::format("it is off by {} at most, though {}",
+                                     io::percent(decision.predicted_error), reasons);
         case DecidedBy::Request:
             break;
     }
@@ -74,4 +75,4 @@ std::vector<std::string> lines_of(const SpectralDecision& decision) {
     return lines;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

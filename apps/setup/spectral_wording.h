@@ -7,7 +7,7 @@
 
 #include "apps/setup/spectral_setup.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// The reasons as one text: "material "prism" disperses (schott:N-SF11), and 3 more; lens
 /// takumar-50mm-f1.2 disperses".
@@ -17,4 +17,4 @@ namespace petzval {
 /// what RGB cannot show.
 [[nodiscard]] std::vector<std::string> lines_of(const SpectralDecision&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,18 +9,19 @@
 #include "io/build/build.h"
 #include "io/file/atomic_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // CPU seconds of the render by section: shares of the timed samples, applied to the whole.
-nlohmann::ordered_json sections(const PathStats& stats, double cpu_s) {
-    const auto ticks = [&](TimedSection s) {
+nlohmann::ordered_json sections(const integrator::PathStats& stats, double cpu_s) {
+    const auto ticks = [&](integrator::TimedSection s) {
         return static_cast<double>(stats.ticks[static_cast<size_t>(s)]);
     };
-    const double whole = ticks(TimedSection::Sample);
+    const double whole = ticks(integrator::TimedSection::Sample);
     if (whole <= 0) return nullptr;
-    const double camera = ticks(TimedSection::Camera), traversal = ticks(TimedSection::Traversal),
-                 texture = ticks(TimedSection::Texture);
+    const double camera = ticks(integrator::TimedSection::Camera),
+                 traversal = ticks(integrator::TimedSection::Traversal),
+                 texture = ticks(integrator::TimedSection::Texture);
     return {{"camera_s", cpu_s * camera / whole},
             {"traversal_s", cpu_s * traversal / whole},
             {"texture_s", cpu_s * texture / whole},
@@ -28,16 +29,16 @@ nlohmann::ordered_json sections(const PathStats& stats, double cpu_s) {
 }
 
 // Lens losses of the lanes that were drawn; null for a camera without a lens.
-nlohmann::ordered_json lens_lanes(const LensLosses<uint64_t>& lanes) {
+nlohmann::ordered_json lens_lanes(const camera::LensLosses<uint64_t>& lanes) {
     if (lanes.drawn == 0) return nullptr;
     return {{"drawn", lanes.drawn},         {"passed", lanes.drawn - lanes.lost()},
             {"vignetted", lanes.vignetted}, {"totally_reflected", lanes.totally_reflected},
             {"missed", lanes.missed},       {"unreached", lanes.unreached}};
 }
 
-nlohmann::ordered_json files_of(const std::vector<WriteOutcome>& outputs) {
+nlohmann::ordered_json files_of(const std::vector<io::WriteOutcome>& outputs) {
     auto out = nlohmann::ordered_json::array();
-    for (const WriteOutcome& output : outputs) {
+    for (const io::WriteOutcome& output : outputs) {
         nlohmann::ordered_json one{{"file", output.wanted.string()}, {"error", nullptr}};
         one["rescue"] = nullptr;
         if (!output.written()) one["error"] = output.error;
@@ -113,7 +114,7 @@ RunFigures figures_from(const nlohmann::ordered_json& json) {
 
 void write_stats(const std::filesystem::path& path, const StatsPicture& picture,
                  const RunFigures& figures, const RunReport& run) {
-    const PathStats& s = figures.stats;
+    const integrator::PathStats& s = figures.stats;
     const uint64_t rays = s.camera_rays + s.bounce_rays + s.shadow_rays;
     // A render that was stopped at once took no time that the clock shows.
     const auto per_cpu_s = [&](uint64_t count) -> nlohmann::ordered_json {
@@ -123,8 +124,8 @@ void write_stats(const std::filesystem::path& path, const StatsPicture& picture,
     nlohmann::ordered_json out;
     out["schema"] = "petzval.stats";
     out["version"] = 1;
-    out["program"] = program_version();
-    out["build"] = build_description();
+    out["program"] = io::program_version();
+    out["build"] = io::build_description();
     out["size_px"] = {picture.width, picture.height};
     out["samples_per_pixel"] = picture.samples.count();
     out["pixel_samples"] = s.samples;
@@ -179,7 +180,7 @@ void write_stats(const std::filesystem::path& path, const StatsPicture& picture,
     // Names of files need not be UTF-8.
     const std::string text =
         out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-    write_file_atomically(path, {text.begin(), text.end()});
+    io::write_file_atomically(path, {text.begin(), text.end()});
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

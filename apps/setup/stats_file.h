@@ -16,12 +16,12 @@
 #include "integrator/render/noise_target.h"
 #include "io/file/rescue.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Counts and times of a render that add up: over the runs of one that was resumed, and over the
 /// parts of a merged one.
 struct RunFigures {
-    PathStats stats;
+    integrator::PathStats stats;
     double load_s = 0, bvh_s = 0, render_wall_s = 0, render_cpu_s = 0;
     int threads = 0, workers = 0;  ///< most of any run: asked for, and that rendered a tile
     double peak_memory_mib = 0;    ///< largest of any run
@@ -37,7 +37,7 @@ struct RunFigures {
 struct RunReport {
     const char* stopped_by = nullptr;  ///< name of the signal; nullptr where none stopped it
     std::vector<std::pair<const char*, double>> phase_s;  ///< wall time of each phase, by name
-    std::vector<WriteOutcome> outputs;
+    std::vector<io::WriteOutcome> outputs;
     std::vector<std::string> notices, warnings, errors;
 };
 
@@ -47,7 +47,7 @@ struct StatsPicture {
     SampleRange samples;        ///< that every pixel has
     float exposure_ev = 0;
     Film::LeftOut left_out;
-    std::optional<NoiseReport> noise{};              ///< where one was to be reached
+    std::optional<integrator::NoiseReport> noise{};  ///< where one was to be reached
     std::shared_ptr<const DenoisedFilm> denoised{};  ///< where it was denoised
 };
 
@@ -59,4 +59,4 @@ struct StatsPicture {
 void write_stats(const std::filesystem::path&, const StatsPicture&, const RunFigures&,
                  const RunReport&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

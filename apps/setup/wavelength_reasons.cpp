@@ -8,7 +8,7 @@
 
 #include "io/base/ascii.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Kind = WavelengthReason::Kind;
@@ -61,9 +61,9 @@ std::string range_of(const Glass& glass) {
 std::vector<WavelengthReason> explicit_requests(const SpectralRequest& request) {
     std::vector<WavelengthReason> out;
     if (request.bins) out.push_back({Kind::Bins, "", ""});
-    if (lower(request.illuminant) != kUsualIlluminant)
+    if (io::lower(request.illuminant) != kUsualIlluminant)
         out.push_back({Kind::Illuminant, request.illuminant, ""});
-    if (lower(request.response) != kUsualResponse)
+    if (io::lower(request.response) != kUsualResponse)
         out.push_back({Kind::Response, request.response, ""});
     return out;
 }
@@ -109,4 +109,4 @@ std::optional<std::string> glass_beyond(const Scene& scene, double first_nm, dou
     return std::nullopt;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

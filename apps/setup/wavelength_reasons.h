@@ -10,7 +10,7 @@
 #include "apps/request/scene_request.h"
 #include "core/scene/scene.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Reason to carry wavelengths: something depends on them.
 struct WavelengthReason {
@@ -53,4 +53,4 @@ struct WavelengthReason {
 [[nodiscard]] std::optional<std::string> glass_beyond(const Scene&, double first_nm,
                                                       double last_nm);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,12 +9,12 @@
 #include "io/image/picture_files.h"
 #include "io/picture/seal.h"
 
-namespace petzval {
+namespace petzval::apps {
 
-std::optional<NoiseReport> reached_noise(const RenderFacts& facts, const Film& film,
-                                         SampleRange samples) {
+std::optional<integrator::NoiseReport> reached_noise(const RenderFacts& facts, const Film& film,
+                                                     SampleRange samples) {
     if (!facts.noise) return std::nullopt;
-    return noise_report(film, *facts.noise, samples.end);
+    return integrator::noise_report(film, *facts.noise, samples.end);
 }
 
 std::optional<std::string> left_out_text(const Film& film) {
@@ -35,10 +35,10 @@ std::optional<std::string> left_out_text(const Film& film) {
     return "warning: " + text;
 }
 
-PictureRows picture_for(const std::filesystem::path& path, const FinishedFilm& done) {
-    Metadata metadata = done.facts.metadata;
+io::PictureRows picture_for(const std::filesystem::path& path, const FinishedFilm& done) {
+    io::Metadata metadata = done.facts.metadata;
     metadata.emplace_back(kLightHash,
-                          light_hash(done.facts, FilmShape::of(done.film), done.samples));
+                          light_hash(done.facts, io::FilmShape::of(done.film), done.samples));
     if (const auto& noise = done.noise; noise && std::isfinite(noise->noise)) {
         metadata.emplace_back("petzval:noise", static_cast<float>(noise->noise));
         metadata.emplace_back("petzval:noiseOfWorstCell", static_cast<float>(noise->worst_cell));
@@ -46,20 +46,20 @@ PictureRows picture_for(const std::filesystem::path& path, const FinishedFilm& d
         metadata.emplace_back("petzval:noiseCellsLeft", static_cast<int>(noise->left));
         metadata.emplace_back("petzval:meanSamples", static_cast<float>(noise->mean_samples));
     }
-    const PictureFormat format = picture_format(path);
-    if (format != PictureFormat::Exr)
+    const io::PictureFormat format = io::picture_format(path);
+    if (format != io::PictureFormat::Exr)
         metadata.emplace_back(kDisplayHash, display_hash(done.facts.display));
-    if (format != PictureFormat::Png) metadata.emplace_back(kSealName, kUnsealed);
+    if (format != io::PictureFormat::Png) metadata.emplace_back(io::kSealName, io::kUnsealed);
     if (const auto& denoised = done.denoised) {
         metadata.emplace_back("petzval:denoisedError", static_cast<float>(denoised->error.value()));
         metadata.emplace_back("petzval:denoisedErrorAtMost",
                               static_cast<float>(denoised->error.most()));
         metadata.emplace_back("petzval:denoisedFloor_nits",
                               static_cast<float>(denoised->floor_nits));
-        if (format != PictureFormat::Exr)
+        if (format != io::PictureFormat::Exr)
             return denoised_colours(done.film, done.samples, metadata, denoised);
     }
     return develop(done.film, done.samples, metadata, done.denoised);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

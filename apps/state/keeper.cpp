@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr double kNever_s = std::numeric_limits<double>::infinity();
@@ -19,11 +19,11 @@ constexpr double kPreview_s = 3, kPreviewShare = 1. / 20;
 
 }  // namespace
 
-Keeper::Keeper(KeeperPlan plan, RenderMonitor& monitor)
+Keeper::Keeper(KeeperPlan plan, integrator::RenderMonitor& monitor)
     : plan_(std::move(plan)),
       monitor_(monitor),
-      checkpoint_due_s_(steady_s() + plan_.checkpoint_s.value_or(kNever_s)),
-      preview_due_s_(plan_.preview ? steady_s() + 1 : kNever_s) {
+      checkpoint_due_s_(integrator::steady_s() + plan_.checkpoint_s.value_or(kNever_s)),
+      preview_due_s_(plan_.preview ? integrator::steady_s() + 1 : kNever_s) {
     if (plan_.checkpoint_s || plan_.preview)
         thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
 }
@@ -35,21 +35,21 @@ void Keeper::finish() {
     if (plan_.preview) attempt([&] { write_preview(plan_.look()); }, preview_told_);
 }
 
-void Keeper::at_pause(const PathStats& stats) {
+void Keeper::at_pause(const integrator::PathStats& stats) {
     bool checkpoint = false, preview = false;
     {
         const std::lock_guard lock(mutex_);
-        const double now_s = steady_s();
+        const double now_s = integrator::steady_s();
         checkpoint = now_s >= checkpoint_due_s_;
         preview = now_s >= preview_due_s_;
     }
     if (checkpoint) attempt([&] { plan_.write_checkpoint(stats); }, checkpoint_told_);
-    std::optional<Picture> now;
-    const double start_s = steady_s();
+    std::optional<io::Picture> now;
+    const double start_s = integrator::steady_s();
     if (preview) attempt([&] { now = plan_.look(); }, preview_told_);
     const std::lock_guard lock(mutex_);
-    look_s_ = steady_s() - start_s;
-    if (checkpoint) checkpoint_due_s_ = steady_s() + *plan_.checkpoint_s;
+    look_s_ = integrator::steady_s() - start_s;
+    if (checkpoint) checkpoint_due_s_ = integrator::steady_s() + *plan_.checkpoint_s;
     if (preview) {
         to_show_ = std::move(now);
         preview_due_s_ = kNever_s;  // until it is written
@@ -61,16 +61,17 @@ void Keeper::watch(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!stop.stop_requested()) {
         if (to_show_) {
-            const Picture picture = std::move(*to_show_);
+            const io::Picture picture = std::move(*to_show_);
             to_show_.reset();
-            const double start_s = steady_s() - look_s_;
+            const double start_s = integrator::steady_s() - look_s_;
             lock.unlock();
             attempt([&] { write_preview(picture); }, preview_told_);
-            const double pause_s = std::max(kPreview_s, (steady_s() - start_s) / kPreviewShare);
+            const double pause_s =
+                std::max(kPreview_s, (integrator::steady_s() - start_s) / kPreviewShare);
             lock.lock();
-            preview_due_s_ = steady_s() + pause_s;
+            preview_due_s_ = integrator::steady_s() + pause_s;
         }
-        const double left_s = std::min(checkpoint_due_s_, preview_due_s_) - steady_s();
+        const double left_s = std::min(checkpoint_due_s_, preview_due_s_) - integrator::steady_s();
         if (left_s <= 0) monitor_.pause = true;  // the next round waits until it was answered
         const double wait_s = left_s <= 0 ? 0.05 : std::min(left_s, 1.);
         wake_.wait_for(lock, stop, std::chrono::duration<double>(wait_s),
@@ -78,8 +79,8 @@ void Keeper::watch(const std::stop_token& stop) {
     }
 }
 
-void Keeper::write_preview(const Picture& picture) {
-    write_output(*plan_.preview, picture, plan_.display);
+void Keeper::write_preview(const io::Picture& picture) {
+    io::write_output(*plan_.preview, picture, plan_.display);
 }
 
 void Keeper::attempt(const std::function<void()>& action, bool& told) {
@@ -94,4 +95,4 @@ void Keeper::attempt(const std::function<void()>& action, bool& told) {
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -14,16 +14,16 @@
 #include "io/image/output.h"
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Files that are written during a render, and how often.
 struct KeeperPlan {
     std::optional<double> checkpoint_s;  ///< time between two checkpoints; absent: none
-    std::function<void(const PathStats&)> write_checkpoint;
+    std::function<void(const integrator::PathStats&)> write_checkpoint;
     std::optional<std::filesystem::path> preview;  ///< .png or .jpg; absent: none
-    std::function<Picture()> look;                 ///< the picture so far, for the preview
-    DisplayOptions display;
-    Notice notice;  ///< gets one line where a preview or a checkpoint cannot be written
+    std::function<io::Picture()> look;             ///< the picture so far, for the preview
+    io::DisplayOptions display;
+    io::Notice notice;  ///< gets one line where a preview or a checkpoint cannot be written
 };
 
 /// Asks a render to pause when something is due, from a thread of its own. Times are those of a
@@ -32,30 +32,30 @@ struct KeeperPlan {
 class Keeper {
   public:
     /// All must outlive it.
-    Keeper(KeeperPlan, RenderMonitor&);
+    Keeper(KeeperPlan, integrator::RenderMonitor&);
     Keeper(const Keeper&) = delete;
     Keeper& operator=(const Keeper&) = delete;
 
     /// For RenderJob::at_pause.
-    void at_pause(const PathStats&);
+    void at_pause(const integrator::PathStats&);
     /// Ends the thread, and writes the last preview: nothing is under way any more.
     void finish();
 
   private:
     void watch(const std::stop_token&);
-    void write_preview(const Picture&);
+    void write_preview(const io::Picture&);
     void attempt(const std::function<void()>& action, bool& told);
 
     KeeperPlan plan_;
-    RenderMonitor& monitor_;
+    integrator::RenderMonitor& monitor_;
     std::mutex mutex_;
     std::condition_variable_any wake_;
     double checkpoint_due_s_, preview_due_s_;  ///< by steady_s(); infinite: never
-    std::optional<Picture> to_show_;           ///< snapshot that is to be written
+    std::optional<io::Picture> to_show_;       ///< snapshot that is to be written
     double look_s_ = 0;                        ///< that it took
     /// Whether it was told that one cannot be written.
     bool checkpoint_told_ = false, preview_told_ = false;
     std::jthread thread_;  // last: it uses the rest, and ends first
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -13,7 +13,7 @@
 #include "io/base/format.h"
 #include "io/base/printable.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,9 +87,10 @@ StateBox covered_box(const std::vector<StateBox>& parts, const std::vector<fs::p
             const Box &a = boxes[order[i]], &b = boxes[order[j]];
             if (b[2][0] >= a[2][1]) break;
             if (overlap(a, b))
-                throw InputError(names[order[i]].string(), "",
-                                 "has samples that are in {} too: {} and {}; a sample counts once",
-                                 names[order[j]].string(), text_of(a), text_of(b));
+                throw io::InputError(
+                    names[order[i]].string(), "",
+                    "has samples that are in {} too: {} and {}; a sample counts once",
+                    names[order[j]].string(), text_of(a), text_of(b));
         }
     Box whole = boxes.front();
     for (const Box& b : boxes)
@@ -98,25 +99,26 @@ StateBox covered_box(const std::vector<StateBox>& parts, const std::vector<fs::p
             whole[i][1] = std::max(whole[i][1], b[i][1]);
         }
     if (const auto missing = missing_part(whole, boxes))
-        throw InputError(names.front().string(), "",
-                         "this state and the others leave a gap: {} are in none of them; render "
-                         "them by ⟨spp⟩ {}:{} and, for a part of the frame, ⟨crop⟩",
-                         text_of(*missing), (*missing)[2][0], (*missing)[2][1]);
+        throw io::InputError(
+            names.front().string(), "",
+            "this state and the others leave a gap: {} are in none of them; render "
+            "them by ⟨spp⟩ {}:{} and, for a part of the frame, ⟨crop⟩",
+            text_of(*missing), (*missing)[2][0], (*missing)[2][1]);
     return {{int(whole[0][0]), int(whole[1][0]), int(whole[0][1]), int(whole[1][1])},
             {uint32_t(whole[2][0]), uint32_t(whole[2][1])}};
 }
 
 MergedState merge_states(const std::vector<fs::path>& files) {
     std::vector<StateBox> parts;
-    std::vector<StateHeader> headers;
+    std::vector<io::StateHeader> headers;
     std::optional<RunRecord> sum;
     for (const fs::path& file : files) {
-        const StateReader reader(file);
-        const StateHeader& header = reader.header();
+        const io::StateReader reader(file);
+        const io::StateHeader& header = reader.header();
         if (!header.is_complete())
-            throw InputError(file.string(), "",
-                             "is not complete: it has {}; petzval resume {} renders the rest",
-                             share_text(header), for_shell(file.string()));
+            throw io::InputError(file.string(), "",
+                                 "is not complete: it has {}; petzval resume {} renders the rest",
+                                 share_text(header), io::for_shell(file.string()));
         RunRecord record = record_in(header, file);
         if (!sum) {
             sum = std::move(record);
@@ -124,14 +126,15 @@ MergedState merge_states(const std::vector<fs::path>& files) {
             const ComparedRender first{sum->facts, headers.front().shape, files.front().string()},
                 other{record.facts, header.shape, file.string()};
             if (const auto differs = difference(first, other, Compare::Pictures))
-                throw InputError(file.string(), "", "is a state of another render: " + *differs);
+                throw io::InputError(file.string(), "",
+                                     "is a state of another render: " + *differs);
             if (sum->facts.noise && sum->facts.noise->noise != record.facts.noise->noise)
-                throw InputError(
+                throw io::InputError(
                     file.string(), "",
                     "was rendered to a noise of {}, and {} to one of {}; petzval "
                     "resume STATE ⟨noise⟩ {:.3g}% brings the other one to the same",
-                    percent(record.facts.noise->noise), first.name,
-                    percent(sum->facts.noise->noise),
+                    io::percent(record.facts.noise->noise), first.name,
+                    io::percent(sum->facts.noise->noise),
                     100 * std::min(record.facts.noise->noise, sum->facts.noise->noise));
             sum->figures += record.figures;
         }
@@ -139,23 +142,24 @@ MergedState merge_states(const std::vector<fs::path>& files) {
         headers.push_back(header);
     }
     const StateBox box = covered_box(parts, files);
-    FilmShape shape = headers.front().shape;
+    io::FilmShape shape = headers.front().shape;
     shape.crop = box.crop;
     if (const auto shortage = memory_shortage(double(shape.bytes())))
-        throw OutOfMemory("the merged picture " + *shortage);
+        throw io::OutOfMemory("the merged picture " + *shortage);
     // What a denoiser needs around a part, other parts have: each pixel is taken from its own.
     const bool of_crops = std::ranges::any_of(
-        headers, [&](const StateHeader& header) { return header.shape.crop != shape.crop; });
+        headers, [&](const io::StateHeader& header) { return header.shape.crop != shape.crop; });
     if (of_crops && shape.pixels() != shape.crop)
-        throw InputError(files.front().string(), "",
-                         "this state and the others are parts of a frame that is denoised: give "
-                         "those of all of the frame");
+        throw io::InputError(
+            files.front().string(), "",
+            "this state and the others are parts of a frame that is denoised: give "
+            "those of all of the frame");
     Film film = shape.empty_film();
     for (size_t i = 0; i < files.size(); ++i) {
-        StateReader reader(files[i]);
+        io::StateReader reader(files[i]);
         if (reader.header().shape != headers[i].shape ||
             reader.header().samples != headers[i].samples)
-            throw InputError(files[i].string(), "", "was replaced meanwhile; merge again");
+            throw io::InputError(files[i].string(), "", "was replaced meanwhile; merge again");
         if (of_crops)
             reader.add_to(film, headers[i].shape.crop);
         else
@@ -164,4 +168,4 @@ MergedState merge_states(const std::vector<fs::path>& files) {
     return {std::move(film), box.samples, std::move(*sum)};
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 #include "apps/state/run_record.h"
 #include "core/film/film.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Samples of a part of a frame.
 struct StateBox {
@@ -33,4 +33,4 @@ struct MergedState {
 /// differs.
 [[nodiscard]] MergedState merge_states(const std::vector<std::filesystem::path>&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

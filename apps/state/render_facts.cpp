@@ -16,7 +16,7 @@
 #include "io/file/read_file.h"
 #include "io/image/display_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -38,11 +38,11 @@ class Hash {
     void add(const V3f& v) {
         for (int i = 0; i < 3; ++i) add(v[i]);
     }
-    void add_bytes(std::span<const uint8_t> bytes) { hash_ = fnv1a(bytes, hash_); }
+    void add_bytes(std::span<const uint8_t> bytes) { hash_ = io::fnv1a(bytes, hash_); }
     [[nodiscard]] std::string text() const { return fmt::format("{:016x}", hash_); }
 
   private:
-    uint64_t hash_ = fnv1a({});
+    uint64_t hash_ = io::fnv1a({});
 };
 
 // Where the camera stands, and how large an orthographic view is: the metadata have less.
@@ -59,15 +59,15 @@ std::string hash_of_learned(const RenderSetup& setup) {
     Hash hash;
     if (const auto& lights = setup.prepared.lights)
         for (const float factor : lights->shares().factors()) hash.add(factor);
-    const TargetGrid* const targets = setup.view.targets.get();
+    const camera::TargetGrid* const targets = setup.view.targets.get();
     if (!targets) return hash.text();
-    for (const Target& target : targets->targets) {
+    for (const camera::Target& target : targets->targets) {
         hash.add(target.centre);
         hash.add(target.radius_m);
     }
-    for (const TargetCell& cell : targets->lists) {
+    for (const camera::TargetCell& cell : targets->lists) {
         hash.add(uint64_t(cell.targets.size()));
-        for (const ListedTarget& listed : cell.targets) {
+        for (const camera::ListedTarget& listed : cell.targets) {
             hash.add(uint64_t(listed.number));
             hash.add(listed.chance);
         }
@@ -76,7 +76,7 @@ std::string hash_of_learned(const RenderSetup& setup) {
 }
 
 // Without the noise that is asked for: samples of another are of the same picture.
-std::string hash_of_noise(const NoiseTarget& target) {
+std::string hash_of_noise(const integrator::NoiseTarget& target) {
     Hash hash;
     hash.add(static_cast<float>(target.floor_nits));
     return hash.text();
@@ -85,13 +85,13 @@ std::string hash_of_noise(const NoiseTarget& target) {
 std::string hash_of_files(const std::vector<std::filesystem::path>& files) {
     Hash hash;
     std::vector<std::string> texts;
-    for (const auto& file : files) texts.push_back(name_and_hash(file));
+    for (const auto& file : files) texts.push_back(io::name_and_hash(file));
     std::sort(texts.begin(), texts.end());  // folders are listed in any order
     for (const std::string& text : texts) hash.add(text);
     return hash.text();
 }
 
-std::string text_of(const Metadata::value_type::second_type& value) {
+std::string text_of(const io::Metadata::value_type::second_type& value) {
     return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
 }
 
@@ -100,7 +100,7 @@ std::string_view short_name(std::string_view name) {
     return name.substr(name.starts_with("petzval:") ? sizeof "petzval:" - 1 : 0);
 }
 
-std::string shape_text(const FilmShape& shape) {
+std::string shape_text(const io::FilmShape& shape) {
     std::vector<std::string_view> layers;
     for (const Aov layer : shape.layers) layers.push_back(aov_info(layer).name);
     std::string text =
@@ -128,35 +128,35 @@ RenderFacts::Texts all_of(const ComparedRender& render, Compare compare) {
 
 }  // namespace
 
-RenderFacts::Texts display_facts(const DisplayOptions& display) {
+RenderFacts::Texts display_facts(const io::DisplayOptions& display) {
     return {{"exposure", fmt::format("{}", display.exposure_ev)},
             {"view", display.view},
             {"OpenColorIO configuration", display.config.empty()
                                               ? std::string("Petzval's own")
-                                              : hash_of_files(display_files(display.config))}};
+                                              : hash_of_files(io::display_files(display.config))}};
 }
 
-RenderFacts facts_of(const RenderSetup& setup, const RenderJob& job, const PathOptions& path,
-                     const DisplayOptions& display) {
+RenderFacts facts_of(const RenderSetup& setup, const integrator::RenderJob& job,
+                     const integrator::PathOptions& path, const io::DisplayOptions& display) {
     RenderFacts facts;
     facts.metadata = describe_render(setup, job, path);
     std::vector<std::filesystem::path> own;
-    for (const NamedFile& file : own_files()) own.push_back(file.path);
+    for (const io::NamedFile& file : own_files()) own.push_back(file.path);
     facts.inputs.emplace_back("Petzval's own files", hash_of_files(own));
-    const auto add = [&](const NamedFile& file) {
+    const auto add = [&](const io::NamedFile& file) {
         std::error_code error;  // of a name that is no file the metadata say all
         if (!std::filesystem::is_regular_file(file.path, error)) return;
         std::string name = file.role;  // several catalogues have one role
         const auto taken = [&](const auto& one) { return one.first == name; };
         for (int i = 2; std::any_of(facts.inputs.begin(), facts.inputs.end(), taken); ++i)
             name = fmt::format("{} {}", file.role, i);
-        facts.inputs.emplace_back(name, visible(name_and_hash(file.path)));
+        facts.inputs.emplace_back(name, io::visible(io::name_and_hash(file.path)));
     };
     // The hash of the scene's own files is in the metadata.
-    for (const NamedFile& file : input_files(setup.from.asked))
+    for (const io::NamedFile& file : input_files(setup.from.asked))
         if (file.path != setup.from.asked.scene && file.path != setup.from.asked.environment)
             add(file);
-    for (const NamedFile& file : setup.prepared.files)
+    for (const io::NamedFile& file : setup.prepared.files)
         if (file.role == kCameraFile) add(file);
     facts.inputs.emplace_back("pose of the camera", hash_of_pose(setup.from.camera));
     facts.inputs.emplace_back("what pilots learned", hash_of_learned(setup));
@@ -202,7 +202,7 @@ RenderFacts facts_from(const Json& json) {
     json.at("display").get_to(facts.display);
     if (json.contains("noise")) {
         const Json& noise = json.at("noise");
-        auto target = std::make_shared<NoiseTarget>();
+        auto target = std::make_shared<integrator::NoiseTarget>();
         target->noise = noise.at("target").get<double>();
         target->floor_nits = noise.at("floor_nits").get<double>();
         target->frame_px = {noise.at("frame_px").at(0).get<int>(),
@@ -228,7 +228,7 @@ std::optional<std::string> difference(const ComparedRender& a, const ComparedRen
     return std::nullopt;
 }
 
-std::string light_hash(const RenderFacts& facts, const FilmShape& shape, SampleRange samples) {
+std::string light_hash(const RenderFacts& facts, const io::FilmShape& shape, SampleRange samples) {
     Hash hash;
     for (const auto& [name, value] : facts.metadata) {
         if (name == kFoundExposure) continue;  // of the display
@@ -256,4 +256,4 @@ std::string display_hash(const RenderFacts::Texts& display) {
     return hash.text();
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

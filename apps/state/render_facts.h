@@ -18,24 +18,24 @@
 #include "io/picture/picture.h"
 #include "io/state/state_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Facts of a render, name by name. Two renders with the same facts have the same samples.
 struct RenderFacts {
     using Texts = std::vector<std::pair<std::string, std::string>>;
 
-    Metadata metadata;  ///< of pictures
+    io::Metadata metadata;  ///< of pictures
     Texts inputs;   ///< hashes of files that are not in the metadata, and of what pilots learned
     Texts display;  ///< how PNG and JPEG show the picture
-    std::shared_ptr<const NoiseTarget> noise;  ///< that is to be reached; empty: none
+    std::shared_ptr<const integrator::NoiseTarget> noise;  ///< that is to be reached; empty: none
 };
 
 /// Facts of how PNG and JPEG show a picture, with a hash of the files that its configuration reads.
-[[nodiscard]] RenderFacts::Texts display_facts(const DisplayOptions&);
+[[nodiscard]] RenderFacts::Texts display_facts(const io::DisplayOptions&);
 
 /// Facts of a render that is set up.
-[[nodiscard]] RenderFacts facts_of(const RenderSetup&, const RenderJob&, const PathOptions&,
-                                   const DisplayOptions&);
+[[nodiscard]] RenderFacts facts_of(const RenderSetup&, const integrator::RenderJob&,
+                                   const integrator::PathOptions&, const io::DisplayOptions&);
 
 /// Facts as JSON, and back. Throws a nlohmann::json exception where something is missing.
 [[nodiscard]] nlohmann::ordered_json to_json(const RenderFacts&);
@@ -44,7 +44,7 @@ struct RenderFacts {
 /// A render to compare: its facts, its film, and what it is called.
 struct ComparedRender {
     const RenderFacts& facts;
-    const FilmShape& shape;
+    const io::FilmShape& shape;
     std::string name;
 };
 
@@ -62,7 +62,7 @@ inline constexpr const char* kDisplayHash = "petzval:displayHash";
 
 /// Hashes as 16 digits: of the light, that is of all facts but the display's, the shape and the
 /// samples; and of the display's facts.
-[[nodiscard]] std::string light_hash(const RenderFacts&, const FilmShape&, SampleRange);
+[[nodiscard]] std::string light_hash(const RenderFacts&, const io::FilmShape&, SampleRange);
 [[nodiscard]] std::string display_hash(const RenderFacts::Texts& display);
 
-}  // namespace petzval
+}  // namespace petzval::apps

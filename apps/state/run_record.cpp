@@ -6,7 +6,7 @@
 #include "io/base/error.h"
 #include "io/build/build.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -29,7 +29,8 @@ std::string text_from(const Json& json) {
 
 }  // namespace
 
-StateHeader header_of(const RunRecord& record, const FilmShape& shape, SampleRange samples) {
+io::StateHeader header_of(const RunRecord& record, const io::FilmShape& shape,
+                          SampleRange samples) {
     Json fields = Json::array();
     for (const auto& [name, texts] : record.fields) {
         Json values = Json::array();
@@ -39,7 +40,7 @@ StateHeader header_of(const RunRecord& record, const FilmShape& shape, SampleRan
     return {shape,
             samples,
             0,
-            {{"program", program_version()},
+            {{"program", io::program_version()},
              {"request", std::move(fields)},
              {"folder", json_of_text(record.folder.string())},
              {"facts", to_json(record.facts)},
@@ -49,15 +50,16 @@ StateHeader header_of(const RunRecord& record, const FilmShape& shape, SampleRan
              {"figures", to_json(record.figures)}}};
 }
 
-RunRecord record_in(const StateHeader& header, const std::filesystem::path& file) {
+RunRecord record_in(const io::StateHeader& header, const std::filesystem::path& file) {
     const Json& run = header.run;
     RunRecord record;
     try {
-        if (const auto program = run.at("program").get<std::string>(); program != program_version())
-            throw InputError(file.string(), "",
-                             "was written by {}, and this is {}: samples of both are "
-                             "not of one picture; use the one that wrote it",
-                             program, program_version());
+        if (const auto program = run.at("program").get<std::string>();
+            program != io::program_version())
+            throw io::InputError(file.string(), "",
+                                 "was written by {}, and this is {}: samples of both are "
+                                 "not of one picture; use the one that wrote it",
+                                 program, io::program_version());
         for (const Json& field : run.at("request")) {
             FieldTexts& one = record.fields.emplace_back();
             field.at(0).get_to(one.name);
@@ -70,12 +72,13 @@ RunRecord record_in(const StateHeader& header, const std::filesystem::path& file
                           text_from(display.at(2))};
         record.figures = figures_from(run.at("figures"));
     } catch (const nlohmann::json::exception&) {
-        throw InputError(file.string(), "", "is damaged: its header says too little of its render");
+        throw io::InputError(file.string(), "",
+                             "is damaged: its header says too little of its render");
     }
     return record;
 }
 
-std::string share_text(const StateHeader& header) {
+std::string share_text(const io::StateHeader& header) {
     const uint64_t pixels = header.wanted() / header.samples.count();
     if (header.samples.count() >= kMostSamples)
         return fmt::format("{} samples of each pixel", header.pixel_samples / pixels);
@@ -83,4 +86,4 @@ std::string share_text(const StateHeader& header) {
     return fmt::format("{} % of its samples", static_cast<int>(100 * share));
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

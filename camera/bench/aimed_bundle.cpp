@@ -7,7 +7,7 @@
 
 #include "camera/lens/trace.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kTolerance = 1e-9;  // of the stop's radius
@@ -212,4 +212,4 @@ std::vector<PupilPoint> AimedBundle::grid(int side) const {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -12,7 +12,7 @@
 #include "camera/lens/paraxial.h"
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Point of the scene whose image lies on the side of +y, or +x in Section::X.
 struct ObjectPoint {
@@ -97,4 +97,4 @@ class AimedBundle {
     PupilPoint chief_{}, least_{}, most_{};
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

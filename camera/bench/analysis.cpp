@@ -8,7 +8,7 @@
 #include "camera/lens/traced_ray.h"
 #include "camera/models/lens_camera.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -156,4 +156,4 @@ FieldAndCircle field_and_circle(const Lens& lens) {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

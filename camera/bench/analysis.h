@@ -11,7 +11,7 @@
 #include "camera/lens/lens.h"
 #include "camera/lens/paraxial.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Half field of use, degrees: what the lens's file states, or else its image circle says; nothing
 /// where neither does.
@@ -66,4 +66,4 @@ struct FieldAndCircle {
 /// of stated_figures().
 [[nodiscard]] FieldAndCircle field_and_circle(const Lens&);
 
-}  // namespace petzval
+}  // namespace petzval::camera

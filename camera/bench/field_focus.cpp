@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace petzval {
+namespace petzval::camera {
 
 std::optional<FieldFocus> field_focus(const AimedBundle& bundle, double film_mm) {
     constexpr double close = 1e-3;
@@ -26,4 +26,4 @@ std::optional<FieldFocus> field_focus(const AimedBundle& bundle, double film_mm)
     return FieldFocus{*tangential, *sagittal};
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

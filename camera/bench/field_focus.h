@@ -6,7 +6,7 @@
 
 #include "camera/bench/aimed_bundle.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Foci of the rays close to the chief ray, mm behind the film along the axis.
 struct FieldFocus {
@@ -17,4 +17,4 @@ struct FieldFocus {
 /// they are lost or leave parallel.
 [[nodiscard]] std::optional<FieldFocus> field_focus(const AimedBundle&, double film_mm);
 
-}  // namespace petzval
+}  // namespace petzval::camera

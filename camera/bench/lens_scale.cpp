@@ -6,7 +6,7 @@
 
 #include "camera/bench/analysis.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 Prescription scaled(Prescription p, double factor) {
     if (!(factor > 0) || !std::isfinite(factor))
@@ -33,4 +33,4 @@ std::optional<double> scale_for_field(const Lens& lens, double half_height_mm,
     return half_height_mm / *height_mm;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

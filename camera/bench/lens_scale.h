@@ -6,7 +6,7 @@
 
 #include "camera/lens/lens.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// The prescription with every length times the factor, the stated focal length and the image
 /// circle too; an aspheric coefficient A of r^n times factor^(1-n). Throws std::invalid_argument
@@ -19,4 +19,4 @@ namespace petzval {
 [[nodiscard]] std::optional<double> scale_for_field(const Lens&, double half_height_mm,
                                                     double half_field_deg, double film_mm);
 
-}  // namespace petzval
+}  // namespace petzval::camera

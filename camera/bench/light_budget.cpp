@@ -12,7 +12,7 @@
 #include "camera/bench/spot.h"
 #include "camera/lens/profile.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Sag of a surface at its rim, mm; 0 where its shape does not reach so far.
@@ -262,4 +262,4 @@ std::optional<double> veiling_glare(const Lens& lens, const LensCoats& coats, do
     return glare / (in_order + glare);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

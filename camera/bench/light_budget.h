@@ -10,7 +10,7 @@
 #include "camera/bench/aimed_bundle.h"
 #include "camera/lens/lens_coats.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Shares of the light that meets the first surface within its rim.
 struct LightBudget {
@@ -84,4 +84,4 @@ struct Ghost {
 [[nodiscard]] std::optional<double> veiling_glare(const Lens&, const LensCoats&, double film_mm,
                                                   int side = 40);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 
 #include "camera/lens/trace.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 V3d lane_of(const Vec3<d4>& v, int lane) {
@@ -133,4 +133,4 @@ void LightWalk::follow_one(LightRay ray, const std::function<void(const LightEnd
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

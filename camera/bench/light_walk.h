@@ -11,7 +11,7 @@
 #include "camera/lens/lens_ray.h"
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 enum class LightFate : uint8_t {
     BehindLens,  ///< leaves the last surface for the film
@@ -76,4 +76,4 @@ class LightWalk {
     std::mt19937 random_{1};
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

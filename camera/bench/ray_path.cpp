@@ -3,7 +3,7 @@
 
 #include "camera/lens/traced_ray.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 std::vector<PupilPoint> section_points(const AimedBundle& bundle, int count) {
     std::vector<PupilPoint> out(size_t(count), bundle.chief());
@@ -31,4 +31,4 @@ Outline ray_path(const Lens& lens, const AimedBundle& bundle, PupilPoint pupil_p
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 #include "camera/bench/aimed_bundle.h"
 #include "camera/lens/profile.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Pupil points of so many rays in the bundle's section, from one edge of its light to the other;
 /// the chief ray where it is one.
@@ -16,4 +16,4 @@ namespace petzval {
 [[nodiscard]] Outline ray_path(const Lens&, const AimedBundle&, PupilPoint, double film_mm,
                                double lead_mm);
 
-}  // namespace petzval
+}  // namespace petzval::camera

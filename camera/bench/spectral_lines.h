@@ -6,7 +6,7 @@
 
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 struct SpectralLine {
     const char* name;
@@ -16,4 +16,4 @@ struct SpectralLine {
 inline constexpr std::array<SpectralLine, 3> kSpectralLines{
     {{"F", kLineF_nm, "#2060d0"}, {"d", kLineD_nm, "#d09000"}, {"C", kLineC_nm, "#c02020"}}};
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 std::array<double, 2> moved(const BundleRay& ray, double shift_mm) {
@@ -79,4 +79,4 @@ std::vector<FanPoint> ray_fan(const Lens& lens, const AimedBundle& bundle, Secti
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -9,7 +9,7 @@
 
 #include "camera/bench/aimed_bundle.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 struct SpotSize {
     std::array<double, 2> centroid_mm{};
@@ -42,4 +42,4 @@ struct FanPoint {
                                             double film_mm, std::array<double, 2> from_mm,
                                             int count = 65);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 void weigh(CameraSample& sample, const f4& lanes, float mis, bool to_target) {
@@ -119,4 +119,4 @@ float shared_frequency(const FilmSpread& spread, V2i frame_px) {
     return shared_px * px * std::sqrt(FilmSpread::per_film(spread.cosines(V2f(0.5f)), kMiddle_nm));
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

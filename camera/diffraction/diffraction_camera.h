@@ -6,7 +6,7 @@
 
 #include "camera/diffraction/lamp_images.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Where light of a camera goes by diffraction, and which lamps have stars.
 struct Diffraction {
@@ -57,4 +57,4 @@ class DiffractionCamera final : public Camera {
     std::shared_ptr<const Diffraction> light_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 #include <kissfft/kissfft.hh>
 #include <numbers>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using Complex = std::complex<double>;
@@ -90,4 +90,4 @@ float DiffractionPattern::density(V2f v) const {
     return far + near_density_ * near_.probability(uint32_t(x), uint32_t(y));
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

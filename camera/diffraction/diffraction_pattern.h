@@ -8,7 +8,7 @@
 #include "camera/diffraction/pupil.h"
 #include "core/sampling/distribution.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Share of the light by spatial frequency v of the pupil, cycles/mm: |F(v)|^2 over the pupil's
 /// area, F the Fourier transform of its amplitude (Fraunhofer; Born and Wolf 1999, Principles of
@@ -37,4 +37,4 @@ class DiffractionPattern {
     float step_ = 1, half_ = 1, far_share_ = 0, near_density_ = 0;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

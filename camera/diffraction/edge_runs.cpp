@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kCorner_rad = 6 * std::numbers::pi / 180;
@@ -147,4 +147,4 @@ float FarPattern::density(V2f v) const {
     return sum * radius_ / (r * r * r);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

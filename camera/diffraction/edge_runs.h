@@ -7,7 +7,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Part of a pupil's edge without a corner, straight or curved.
 struct EdgeRun {
@@ -60,4 +60,4 @@ class FarPattern {
     float even_ = 1, radius_ = 1;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

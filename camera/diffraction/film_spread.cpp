@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Nodes across the frame, each way: cat's eyes change slowly.
@@ -115,4 +115,4 @@ double finest_contrast(const StopCamera& camera, V2i frame_px) {
     return std::min(kept({frame_px.x / 2., 0}), kept({0, frame_px.y / 2.}));
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

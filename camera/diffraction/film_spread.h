@@ -9,7 +9,7 @@
 #include "camera/diffraction/stop_cosines.h"
 #include "camera/targets/stop_camera.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Pattern of the light that comes to a point of the film.
 struct SpreadHere {
@@ -54,4 +54,4 @@ class FilmSpread {
 /// the frame, two pixels for each of its periods: the lesser of both directions. Line d.
 [[nodiscard]] double finest_contrast(const StopCamera&, V2i frame_px);
 
-}  // namespace petzval
+}  // namespace petzval::camera

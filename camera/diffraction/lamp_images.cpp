@@ -11,7 +11,7 @@
 #include "core/sampling/prepass_seed.h"
 #include "core/sampling/sampler.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Cells of the search across the frame, and how far beyond it they go, in frames.
@@ -194,4 +194,4 @@ float LampImages::density(const Choice& choice, V2f cosines, V2f place,
     return choice.chance * sum / choice.sum;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -11,7 +11,7 @@
 #include "camera/target_camera.h"
 #include "core/light/small_features.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Places of the film that displaced film points are drawn from, beside those that the patterns
 /// draw: where lamps are imaged.
@@ -61,4 +61,4 @@ class LampImages {
     std::vector<Choice> choices_;  ///< of cells of the frame, row by row
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

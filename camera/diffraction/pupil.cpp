@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr int kSide = 256, kPointsAcross = 4;
@@ -95,4 +95,4 @@ double contrast(const DiffractingPupil& pupil, V2d shift_mm) {
     return whole > 0 ? sum / whole : 0;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

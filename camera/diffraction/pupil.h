@@ -8,7 +8,7 @@
 #include "camera/diffraction/edge_runs.h"
 #include "camera/iris/iris.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Even pupil in the plane of the stop, mm.
 struct DiffractingPupil {
@@ -31,4 +31,4 @@ using RimTest = std::function<bool(V2f)>;
 /// against itself by `shift_mm`, over the whole (Hopkins 1955, Proc. R. Soc. A 231, 91).
 [[nodiscard]] double contrast(const DiffractingPupil&, V2d shift_mm);
 
-}  // namespace petzval
+}  // namespace petzval::camera

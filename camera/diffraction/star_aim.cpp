@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Half widths of the window within which a spike is followed exactly.
@@ -87,4 +87,4 @@ float StarAim::density(V2f v) const {
     return sum / (2 * half_chord * r);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

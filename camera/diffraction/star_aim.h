@@ -7,7 +7,7 @@
 
 #include "camera/diffraction/edge_runs.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Points of a disc in the plane of spatial frequencies, by directions of a pattern's lobes.
 class StarAim {
@@ -45,4 +45,4 @@ class StarAim {
     size_t count_ = 0;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

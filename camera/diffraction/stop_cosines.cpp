@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Farthest place from the middle of the frame, along an edge, in frames; and up to where the fit
@@ -194,4 +194,4 @@ std::optional<V2f> StopCosines::film_of(V2f cosines) const {
     return at + V2f(0.5f);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

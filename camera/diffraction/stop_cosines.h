@@ -7,7 +7,7 @@
 
 #include "camera/targets/stop_camera.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Optical direction cosines, x and y in the axes of the stop, of the ray that passes the middle of
 /// the stop on its way from a film point. Light that is aimed at one point and diffracted to
@@ -45,4 +45,4 @@ class StopCosines {
     float index_ = 1;                ///< of the medium about the stop
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

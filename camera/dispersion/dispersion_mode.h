@@ -7,7 +7,7 @@
 #include "core/math/lanes.h"
 #include "core/spectrum/bands.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Shared: the ray of line d, as if the lens were achromatic. Split: one ray for each lane. Hero:
 /// the ray of one lane, weighed for each lane by where it would have reached the film (hero.h).
@@ -24,4 +24,4 @@ enum class DispersionMode : uint8_t { Shared, Split, Hero };
     return on;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 #include "camera/camera.h"
 #include "camera/dispersion/lens_point.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Shares of the lanes in a ray that was drawn for one of them. A ray of the scene reaches the film
 /// at a place of its own in each lane, and the pixel's filter says what it counts there; the
@@ -29,4 +29,4 @@ namespace petzval {
     return value * landing.open * (static_cast<float>(lane_count(on)) * of_hero / sum);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

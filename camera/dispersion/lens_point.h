@@ -6,7 +6,7 @@
 
 #include "camera/camera.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Request for rays of some lanes.
 struct LaneRequest {
@@ -44,4 +44,4 @@ concept LensPoint = requires(const P p, const LaneRequest& request,
     { p.exposure() } -> std::same_as<float>;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

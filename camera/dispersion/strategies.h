@@ -7,7 +7,7 @@
 #include "camera/dispersion/hero.h"
 #include "camera/dispersion/lens_point.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// A sample without paths yet: what the rays lost, and the exposure.
 template <LensPoint P, class Rays>
@@ -86,4 +86,4 @@ template <LensPoint P>
     return split_rays(lens, hero, bands.on);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

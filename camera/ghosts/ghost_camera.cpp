@@ -5,7 +5,7 @@
 
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// What surfaces in front of a lamp reflect is left to the rays over all pairs, mostly.
@@ -90,4 +90,4 @@ void GhostCamera::add_rays(const Place& place, const GhostDraw& drawn, m4 lanes,
         if (found->share[i] > 0) add(only_lane(i), i);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 
 #include "camera/ghosts/ghost_draws.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Rays of another camera and, together with them, rays on which light of two reflections reaches
 /// the same film points: an estimate without a bias, as each draw is weighed by the density of
@@ -35,4 +35,4 @@ class GhostCamera final : public Camera {
     LensIndices<f4> line_d_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

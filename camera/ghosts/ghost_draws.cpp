@@ -5,7 +5,7 @@
 
 #include "camera/ray_bundle.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Shares of the samples that draw over all, and through a region: a ghost is darker than the
@@ -53,4 +53,4 @@ float GhostDraws::density(V2f film_mm, std::span<const float> waves, const Ghost
            kThroughRegion * through / static_cast<float>(waves.size());
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -10,7 +10,7 @@
 #include "camera/ghosts/ghost_regions.h"
 #include "core/sampling/sampler.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Points that samples draw: over all of the last surface, mostly where the iris is seen, for the
 /// pairs that are bright in an even scene or by the lamps; and through the regions of lamps.
@@ -40,4 +40,4 @@ class GhostDraws {
     GhostRegions regions_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 #include "camera/ghosts/lens_face.h"
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr std::array<double, 4> kVisible_nm{450, 517, 583, 650};
@@ -110,4 +110,4 @@ float GhostOptics::reflects(GhostPair pair) const {
     return static_cast<float>(sum / kVisible_nm.size());
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -10,7 +10,7 @@
 #include "camera/ghosts/ghost_trace.h"
 #include "camera/models/lens_camera.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Ray of a ghost from a point of the film.
 struct GhostRay {
@@ -58,4 +58,4 @@ class GhostOptics {
     double rear_mm_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 #include "core/sampling/warp.h"
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Share of the choice of a pair that is the same for all of them, and of the points that are drawn
@@ -172,4 +172,4 @@ float GhostPupils::density(V2f film_mm, const GhostDraw& drawn) const {
     return kWhole / optics_.rear_mm2() + within;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "camera/ghosts/ghost_region.h"
 #include "camera/ghosts/ghost_tasks.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 class GhostPupils {
   public:
@@ -44,4 +44,4 @@ class GhostPupils {
     std::vector<float> chances_, up_to_;  ///< of each pair; and the sum of those up to it
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

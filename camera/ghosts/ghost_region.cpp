@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Beyond what the rays show, as a share of it: film points, and errors of straight lines; and so
@@ -105,4 +105,4 @@ StraightRegion straight_region(const std::vector<GhostRecord>& records) {
     return found;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Place of a wavelength between 0 at line d and 1 at 400 nm, by its inverse square: so do indices
 /// change, nearly (Cauchy 1836).
@@ -81,4 +81,4 @@ struct StraightRegion {
 /// left. kLeastRecords at least.
 [[nodiscard]] StraightRegion straight_region(const std::vector<GhostRecord>&);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 
 #include "camera/ghosts/ghost_search.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr size_t kMostLamps = 8;
@@ -234,4 +234,4 @@ float GhostRegions::density(V2f film_mm, float wave, const GhostDraw& drawn) con
     return sum * chance;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

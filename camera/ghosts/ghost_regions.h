@@ -13,7 +13,7 @@
 #include "camera/ghosts/ghost_tasks.h"
 #include "core/light/small_features.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 struct GhostLamp;
 
@@ -70,4 +70,4 @@ class GhostRegions {
     std::vector<Group> groups_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -9,7 +9,7 @@
 #include "core/sampling/warp.h"
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Parts of the first surface along its diameter. Batches of eight rays through each that tell its
@@ -266,4 +266,4 @@ auto GhostSearch::find(uint32_t pair, const GhostLamp& lamp, int most_parts) con
     return std::move(search).found();
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

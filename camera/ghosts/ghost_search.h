@@ -7,7 +7,7 @@
 
 #include "camera/ghosts/ghost_regions.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// A lamp in the lens's space, z from the first vertex.
 struct GhostLamp {
@@ -45,4 +45,4 @@ class GhostSearch {
     std::vector<LampDraws> draws_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Runs a task for each number in [0, count), in any order and several at once, and returns when
 /// all are done.
@@ -16,4 +16,4 @@ inline void one_by_one(size_t count, const std::function<void(size_t)>& task) {
     for (size_t i = 0; i < count; ++i) task(i);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -4,7 +4,7 @@
 
 #include "camera/lens/trace.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Two surfaces that reflect light on its way to the film: `first`, then `second`, which lies
 /// before it.
@@ -69,4 +69,4 @@ template <class N, class Observer>
     return ray.alive();
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

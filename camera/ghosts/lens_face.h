@@ -7,7 +7,7 @@
 #include "camera/lens/trace.h"
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 struct FacePoint {
     V3d point_mm;  ///< z from the surface's vertex
@@ -34,4 +34,4 @@ struct FacePoint {
     return FacePoint{{at.x, at.y, z}, up / up.length()};
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

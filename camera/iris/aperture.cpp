@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Farthest that a polyline may run from its arc, in radii of the polygon's circle.
@@ -88,4 +88,4 @@ Polygon frame() {
              {{-0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}, {0.5, -0.5}}}};
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

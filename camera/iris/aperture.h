@@ -12,7 +12,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 using V2d = Imath::V2d;
 
@@ -70,4 +70,4 @@ struct PolygonFault {
 /// Fault of a mask: its size, a texel outside of [0, 1], or all of them black.
 [[nodiscard]] std::optional<std::string> find_fault(const Mask&);
 
-}  // namespace petzval
+}  // namespace petzval::camera

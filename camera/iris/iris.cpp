@@ -2,7 +2,7 @@
 // Points of an iris, drawn by random numbers.
 #include "camera/iris/iris.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Points to try. The first is u itself: what is accepted of a stratified set stays stratified. The
@@ -57,4 +57,4 @@ V2f Iris::sample(V2f u) const {
     return p;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

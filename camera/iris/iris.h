@@ -11,7 +11,7 @@
 #include "camera/iris/iris_options.h"
 #include "camera/iris/iris_polygon.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Sampling methods that a shape has; the first keeps stratification best. Circle and mask have no
 /// triangles, other polygons no formula.
@@ -81,4 +81,4 @@ class Iris {
     Shape shape_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 template <class... Functions>
@@ -141,4 +141,4 @@ double Iris::share_beyond(double radius_mm) const {
     return std::clamp(1 - within / area_, 0.0, 1.0);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 
 #include "camera/iris/trapezoids.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 MaskIris::MaskIris(const Mask& mask, double texel_mm)
     : texels_(mask.texels),
@@ -31,4 +31,4 @@ double MaskIris::area_within_mm2(double radius_mm) const {
     return area;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

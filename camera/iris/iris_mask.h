@@ -5,7 +5,7 @@
 #include "camera/iris/aperture.h"
 #include "core/sampling/distribution.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 class MaskIris {
   public:
@@ -36,4 +36,4 @@ class MaskIris {
     double texel_area_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Scale of a shape to the round stop. EqualArea: the shape has the area of the stop (a mask: area
 /// times transmission), so that it lets through what the f-number says; it may reach beyond the
@@ -18,4 +18,4 @@ enum class ApertureScale : uint8_t { EqualArea, Inscribed };
 /// inside.
 enum class IrisSampling : uint8_t { Formula, Triangles, Alias, Rejection };
 
-}  // namespace petzval
+}  // namespace petzval::camera

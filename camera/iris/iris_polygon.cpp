@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 V2f rounded(const V2d& p) {
@@ -131,4 +131,4 @@ double PolygonIris::area_within_mm2(double radius_mm) const {
     return area;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -9,7 +9,7 @@
 #include "core/sampling/distribution.h"
 #include "core/sampling/warp.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Point-in-polygon test: a raster of cells that are inside, outside, or cut by an edge and then
 /// know the trapezoids in them.
@@ -117,4 +117,4 @@ inline bool PolygonRaster::holds(V2f p) const {
     return false;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

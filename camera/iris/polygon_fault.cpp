@@ -5,7 +5,7 @@
 
 #include "camera/iris/aperture.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 std::string text_of(double value) {
@@ -118,4 +118,4 @@ std::optional<std::string> find_fault(const Mask& mask) {
     return std::nullopt;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

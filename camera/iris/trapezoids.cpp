@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 struct Side {
@@ -108,4 +108,4 @@ double area_in_circle(const Trapezoid& t, double radius) {
     return area;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 
 #include "camera/iris/aperture.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Trapezoid of level bottom and top; x of the left and right side at each.
 struct Trapezoid {
@@ -34,4 +34,4 @@ struct Trapezoid {
 /// Area that a convex trapezoid shares with the circle of that radius about the origin.
 [[nodiscard]] double area_in_circle(const Trapezoid&, double radius);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 
 #include "camera/lens/traced_ray.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Rays from the object's foot through points of the plane of the first vertex, at one azimuth.
@@ -84,4 +84,4 @@ std::optional<AxialSpot> axial_spot(const Lens& lens, double object_mm, double f
     return AxialSpot{sum.square_mm2 / lines, sum.product_mm / lines, sum.slope_square / lines};
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 
 #include "camera/lens/lens.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Moments of the spot: means over the light of the lines F, d and C in equal parts, each spread
 /// evenly over the part of the entrance pupil that passes. The centroid lies on the axis: lenses
@@ -29,4 +29,4 @@ struct AxialSpot {
 [[nodiscard]] std::optional<AxialSpot> axial_spot(const Lens&, double object_mm, double film_mm,
                                                   double stop_radius_mm);
 
-}  // namespace petzval
+}  // namespace petzval::camera

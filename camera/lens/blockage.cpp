@@ -8,7 +8,7 @@
 #include "camera/lens/paraxial.h"
 #include "camera/lens/traced_ray.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr int kAcross = 16;
@@ -79,4 +79,4 @@ double paraxial_irradiance(const Lens& lens, double iris_area_mm2) {
     return flat / (1 + flat) * iris_area_mm2 / (stop_mm * stop_mm);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

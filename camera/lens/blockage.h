@@ -8,7 +8,7 @@
 #include "camera/lens/lens.h"
 #include "camera/lens/lens_ray.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Surface that stops the rays of the film's middle, and how.
 struct Blockage {
@@ -30,4 +30,4 @@ struct Blockage {
 /// where the pupil is in the film.
 [[nodiscard]] double paraxial_irradiance(const Lens&, double iris_area_mm2);
 
-}  // namespace petzval
+}  // namespace petzval::camera

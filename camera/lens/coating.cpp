@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Reflected shares of the amplitude at a bare boundary.
@@ -61,4 +61,4 @@ f4 transmittance(Coating coating, const Crossing& c, bool touches_air, f4 nm) {
     return 1 - (coated ? coated_reflectance(c, nm) : fresnel_reflectance(c)).mean();
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

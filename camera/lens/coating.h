@@ -5,7 +5,7 @@
 #include "camera/lens/lens.h"
 #include "camera/lens/lens_options.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Index of magnesium fluoride, at all wavelengths: 1.3785 at 550 nm for the ordinary ray of the
 /// crystal (Dodge 1984, Appl. Opt. 23, 1980), rounded, as evaporated films differ by more. Its
@@ -42,4 +42,4 @@ template <class S>
     return (s.medium_before == 0) != (s.medium_after == 0);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

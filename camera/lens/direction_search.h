@@ -5,7 +5,7 @@
 
 #include "camera/lens/number.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Newton step from a direction, lane by lane.
 struct DirectionStep {
@@ -52,4 +52,4 @@ template <class StepAt>
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -9,7 +9,7 @@
 #include "camera/lens/paraxial.h"
 #include "camera/lens/traced_ray.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kInfinity_mm = 1e15;
@@ -235,4 +235,4 @@ double fnumber_of(const Lens& lens, double stop_radius_mm) {
     return ray && ray->sine > 0 ? 1 / (2 * ray->sine) : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "camera/lens/lens.h"
 #include "camera/lens/lens_options.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// The lens with its film, or its focusing group, where an axial point at object_mm (from
 /// the first vertex of what is returned, < 0; -infinity for a distant one) is sharp. The film is
@@ -48,4 +48,4 @@ inline constexpr const char* kTracedFnumber =
 /// F-number of a stop radius, by kTracedFnumber; infinite where no ray gets there.
 [[nodiscard]] double fnumber_of(const Lens&, double stop_radius_mm);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -9,7 +9,7 @@
 
 #include "camera/lens/coating.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using Complex = std::complex<double>;
@@ -123,4 +123,4 @@ LayerStack layers_of(Coating coating, double glass) {
     return {layer(outer, 0.25)};
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

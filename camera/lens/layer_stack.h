@@ -7,7 +7,7 @@
 
 #include "camera/lens/lens_options.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Thin layer of the complex index n - ik, n = index + cauchy_um2 / w^2, w in um.
 struct Layer {
@@ -56,4 +56,4 @@ struct SurfaceShares {
     return year < 1945 ? Coating::Uncoated : year < 1971 ? Coating::MgF2 : Coating::Broadband;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

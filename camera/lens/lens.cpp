@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 [[noreturn]] void refuse(size_t surface, const char* what) {
@@ -188,4 +188,4 @@ LensIndices<f8> Lens::indices(f8 nm) const {
     return from_tables(nm);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

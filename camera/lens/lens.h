@@ -8,7 +8,7 @@
 #include "camera/lens/prescription.h"
 #include "core/spectrum/spectrum_table.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Shapes of surfaces that cost differently.
 enum class Shape : uint8_t {
@@ -125,4 +125,4 @@ inline const std::vector<Asphere<double>>& Lens::aspheres<double>() const {
     return aspheres_d_;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

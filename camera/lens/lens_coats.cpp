@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Cells of the coarsest table, of 10 nm, and how many times finer one may be each way.
@@ -105,7 +105,7 @@ bool CoatTables::fits(int surface, int waves, int cosines) const {
 
 f4 CoatTables::transmittance(int surface, const Crossing& c, f4 nm) const {
     const Table& table = tables_[size_t(surface)];
-    if (table.formula) return petzval::transmittance(coating_, c, table.touches_air, nm);
+    if (table.formula) return camera::transmittance(coating_, c, table.touches_air, nm);
     const f4 ratio = max(c.index_from / c.index_into, splat(1.f));
     const f4 cosine =
         min(sqrt(max(1 - ratio * ratio * (1 - c.cosine * c.cosine), f4{})), splat(1.f));
@@ -128,4 +128,4 @@ f4 CoatTables::transmittance(int surface, const Crossing& c, f4 nm) const {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 #include "camera/lens/coating.h"
 #include "camera/lens/lens_ray.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Coatings of all surfaces of a lens, for analyses: exact, in doubles.
 class LensCoats {
@@ -65,4 +65,4 @@ class CoatTables {
     std::vector<Table> tables_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

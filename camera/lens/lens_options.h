@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Coating of surfaces. Ideal: nothing is lost. Uncoated: Fresnel's reflection at every change of
 /// index. MgF2: one layer of magnesium fluoride, a quarter wave thick at 550 nm and normal
@@ -35,4 +35,4 @@ enum class FocusBy : uint8_t {
 /// ray of floats in the world.
 enum class Precision : uint8_t { Float, Double };
 
-}  // namespace petzval
+}  // namespace petzval::camera

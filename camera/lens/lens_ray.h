@@ -4,7 +4,7 @@
 
 #include "camera/lens/number.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 enum class Towards { Film, Scene };
 /// Whether semi-diameters stop light; the iris has one as well.
@@ -50,4 +50,4 @@ struct NoObserver {
     void operator()(const auto&...) const {}
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

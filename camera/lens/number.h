@@ -10,7 +10,7 @@
 
 #include "core/math/lanes.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Types that go with a number. Scalar: of constants. Value: the number without derivatives. Mask:
 /// the result of comparing. Code: an integer for each lane.
@@ -46,6 +46,8 @@ template <class V>
 [[nodiscard]] V broadcast(ScalarOf<V> a) {
     return V{} + a;
 }
+
+using petzval::sqrt;  // of lanes: built-in vectors have no namespace to be found by
 
 template <std::floating_point S>
 [[nodiscard]] S sqrt(S a) {
@@ -212,4 +214,4 @@ template <class Mask, class N>
     return {select(on, a.x, b.x), select(on, a.y, b.y), select(on, a.z, b.z)};
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Paraxial ray: height, and index times angle, which refraction at a plane leaves alone. Welford
@@ -161,4 +161,4 @@ Seidel seidel(const Lens& lens, double field_tan) {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 
 #include "camera/lens/lens.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Plane in which paraxial rays are followed: it matters where there are cylinders.
 enum class Section : uint8_t { X, Y };
@@ -52,4 +52,4 @@ struct Seidel {
 /// at line d. Throws std::invalid_argument where the lens has cylinders.
 [[nodiscard]] Seidel seidel(const Lens&, double field_tan);
 
-}  // namespace petzval
+}  // namespace petzval::camera

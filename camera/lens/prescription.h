@@ -10,7 +10,7 @@
 #include "camera/lens/layer_stack.h"
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 enum class Profile : uint8_t {
     Rotational,
@@ -44,4 +44,4 @@ struct Prescription {
     std::optional<std::array<int, 2>> focus_group;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::camera {
 
 double sag_mm(const LensSurface& surface, double height_mm, Section section) {
     const auto straight = section == Section::X ? Profile::CylinderX : Profile::CylinderY;
@@ -46,4 +46,4 @@ Outline element_outline(const Lens& lens, int surface, Section section) {
     return front;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "camera/lens/lens.h"
 #include "camera/lens/paraxial.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Sag, z from the surface's own vertex, at a height in a section, mm; NaN beyond the conic's
 /// reach.
@@ -23,4 +23,4 @@ using Outline = std::vector<std::array<double, 2>>;  ///< {z, height}, mm; z fro
 /// heights. Empty where air follows.
 [[nodiscard]] Outline element_outline(const Lens&, int surface, Section);
 
-}  // namespace petzval
+}  // namespace petzval::camera

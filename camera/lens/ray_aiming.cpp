@@ -7,7 +7,7 @@
 #include "camera/lens/direction_search.h"
 #include "camera/lens/trace.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Tolerances in radii of the stop; Newton's next step squares the latter.
@@ -223,4 +223,4 @@ FoundRays RayAimer::aim(const PlanePoint<f8>& film_mm, const PlanePoint<f8>& sto
     return newton(film_mm, stop_mm, cosines, indices);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -9,7 +9,7 @@
 #include "camera/lens/lens_ray.h"
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Point of a plane across the axis, lane by lane. Millimetres.
 template <class V>
@@ -113,4 +113,4 @@ class RayAimer {
     std::vector<Node> table_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

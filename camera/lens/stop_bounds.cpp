@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr int kRings = 24, kRows = StopBounds::kRows, kHalvings = 5;
@@ -108,4 +108,4 @@ const StopBounds* StopBoundsByHeight::at(float height_mm) const {
     return bounds ? &*bounds : nullptr;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -11,7 +11,7 @@
 #include "core/math/lanes.h"
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// A part of the plane of the stop in rows across an axis of symmetry. Millimetres, in a frame
 /// whose +y axis points the way that the film point lies from the lens's axis.
@@ -55,4 +55,4 @@ class StopBoundsByHeight {
     std::vector<std::optional<StopBounds>> rings_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

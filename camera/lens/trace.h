@@ -9,7 +9,7 @@
 #include "camera/lens/lens_ray.h"
 #include "camera/lens/number.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// A passage through the surfaces of a range, in one of two directions.
 struct LensPassage {
@@ -425,4 +425,4 @@ void trace_two(const LensPassage& through, const std::array<LensIndices<ValueOf<
     other.put_into(traced[1]);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 
 #include "camera/lens/trace.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 Vec3<d4> in_all_lanes(const V3d& v) {
@@ -96,4 +96,4 @@ void trace_rays(const Lens& lens, const RaysIn& in, Towards towards, Clip clip,
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

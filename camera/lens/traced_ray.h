@@ -11,7 +11,7 @@
 #include "camera/lens/lens_ray.h"
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Ray through a lens, millimetres; z = 0 at the first vertex, +z towards the film.
 struct TracedRay {
@@ -47,4 +47,4 @@ struct RaysOut {
 /// Traces many rays, each as trace_ray() does, in a fraction of its time.
 void trace_rays(const Lens&, const RaysIn&, Towards, Clip, const RaysOut&);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "camera/dispersion/strategies.h"
 #include "core/spectrum/spectrum_table.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Least f(h) in units of f: below it the ray is so far out that the closed form means nothing.
@@ -157,4 +157,4 @@ double AberratedLensCamera::zonal_mm(double n, double h_mm) const {
     return zonal_focal_length_mm(optics_at(n), focus_mm_, h_mm);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 #include "camera/models/thin_lens.h"
 #include "camera/models/thin_lens_optics.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Single lens that stands as ThinLens does. The film is where the plane at focus_m is sharp for
 /// rays near the axis at the d line.
@@ -60,4 +60,4 @@ class AberratedLensCamera final : public Camera {
     float tan_half_x_, tan_half_y_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "camera/lens/trace.h"
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr auto kLineD = static_cast<float>(kLineD_nm);
@@ -381,4 +381,4 @@ double LensCamera::irradiance(V2f film_mm, uint32_t count) const {
     return sum / double(count);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -14,7 +14,7 @@
 #include "camera/models/thin_lens.h"
 #include "camera/pose.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// One draw of the iris, lane by lane. V: f4 or d4.
 template <class V>
@@ -131,4 +131,4 @@ class LensCamera final : public Camera {
     float gain_ = 1.f, exposure_ = 1.f;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 #include "camera/lens/trace.h"
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 template <class V>
@@ -228,4 +228,4 @@ f4 LensOptics::transmitted(V2f film_mm, V l, V m, const LensIndices<V>& indices,
 template f4 LensOptics::transmitted(V2f, f4, f4, const LensIndices<f4>&, f4) const;
 template f4 LensOptics::transmitted(V2f, d4, d4, const LensIndices<d4>&, f4) const;
 
-}  // namespace petzval
+}  // namespace petzval::camera

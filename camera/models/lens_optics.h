@@ -16,7 +16,7 @@
 #include "camera/lens/stop_bounds.h"
 #include "camera/models/stop_draw.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Film points of up to eight samples, each with a wavelength; lanes that are left over repeat one
 /// of them.
@@ -121,4 +121,4 @@ class LensOptics {
     StopBoundsByHeight bounds_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::camera {
 
 void MovingCamera::sample_all(std::span<const FilmPoint> points, std::span<const Bands> bands,
                               std::span<CameraSample> out) const {
@@ -19,4 +19,4 @@ void MovingCamera::sample_all(std::span<const FilmPoint> points, std::span<const
         }
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "camera/camera.h"
 #include "camera/shutter.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Rays of another camera, each at a time that a shutter draws, from where the camera stands then.
 class MovingCamera final : public Camera {
@@ -26,4 +26,4 @@ class MovingCamera final : public Camera {
     std::shared_ptr<const Shutter> shutter_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -3,7 +3,7 @@
 
 #include "core/sampling/sampler.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 double NaturalVignetting::axial_mean(const Iris& iris, double film_mm) {
     constexpr uint32_t kPoints = 4096;
@@ -16,4 +16,4 @@ double NaturalVignetting::axial_mean(const Iris& iris, double film_mm) {
     return sum / kPoints;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 #include "camera/iris/iris.h"
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Fall-off behind a stop that stands parallel to the film, ray by ray. A film point gets cos theta
 /// cos theta' / d^2 of the light of a stop point (Foote 1915, "Illumination from a Radiating
@@ -40,4 +40,4 @@ class NaturalVignetting {
     float per_film_1_mm_ = 0, scale_ = 1;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 #include "camera/iris/iris.h"
 #include "camera/lens/stop_bounds.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 class StopDraw {
   public:
@@ -43,4 +43,4 @@ class StopDraw {
     V2f up_{0.f, 1.f};
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

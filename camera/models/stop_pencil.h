@@ -4,7 +4,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Rays of a film point through a lens without thickness at the origin, which looks along -z. A ray
 /// through the stop at s, h = |s|, has the slope tangents - s v(h), with the vergence
@@ -21,4 +21,4 @@ struct StopPencil {
     [[nodiscard]] V3d direction(V2d s) const;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

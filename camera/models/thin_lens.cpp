@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Distance from which a lens radius is below the last digit of a float: as good as infinity.
@@ -77,4 +77,4 @@ M44f look_at(const V3f& eye, const V3f& target) {
                 back.z, 0, eye.x, eye.y, eye.z, 1);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

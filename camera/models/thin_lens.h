@@ -10,7 +10,7 @@
 #include "camera/models/stop_pencil.h"
 #include "camera/pose.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Thin lens of no aberration; without an iris it is a pinhole. It stands at the origin of its own
 /// space, looks along -z with y up, and images the plane at focus_m sharply.
@@ -60,4 +60,4 @@ class OrthographicCamera final : public Camera {
 /// Rigid transform of a camera at eye that looks at target; up is +y, or -z where it looks along y.
 [[nodiscard]] M44f look_at(const V3f& eye, const V3f& target);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -166,4 +166,4 @@ double radius_within_error(const SingletOptics& at, double focus_mm, double radi
     return radius_mm;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

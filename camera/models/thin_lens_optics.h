@@ -8,7 +8,7 @@
 
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Film distance S' at which an object at S is sharp: 1/S + 1/S' = 1/f (Gauss 1840).
 /// Error: the object is not beyond the focal length, so no film can catch it.
@@ -68,4 +68,4 @@ struct Singlet {
 [[nodiscard]] double radius_within_error(const SingletOptics&, double focus_mm, double radius_mm,
                                          double most_error);
 
-}  // namespace petzval
+}  // namespace petzval::camera

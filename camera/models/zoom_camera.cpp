@@ -3,7 +3,7 @@
 
 #include "core/math/steps.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 CameraSample ZoomCamera::sample(const FilmPoint& at, const Bands& bands) const {
     const auto [before, share] = step_place(at.time, at_steps_.size());
@@ -18,4 +18,4 @@ CameraSample ZoomCamera::sample(const FilmPoint& at, const Bands& bands) const {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 
 #include "camera/camera.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Camera that zooms: it has the rays of other cameras, one for each time step of its shutter, and
 /// lies between the two next to a film point's time.
@@ -23,4 +23,4 @@ class ZoomCamera final : public Camera {
     std::vector<std::unique_ptr<Camera>> at_steps_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -9,7 +9,7 @@
 #include "camera/bench/lens_scale.h"
 #include "camera/lens/focus.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kDistant_mm = -std::numeric_limits<double>::infinity();
@@ -34,4 +34,4 @@ std::optional<Lens> scaled_to_view(const Lens& lens, float film_height_mm, float
     return Lens(scaled(lens.prescription(), *factor));
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

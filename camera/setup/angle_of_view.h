@@ -7,7 +7,7 @@
 #include "camera/lens/lens.h"
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Vertical angle of view, radians, with a distant scene in focus: by the ray of line d through the
 /// middle of the stop; the paraxial angle for a lens that sends none there.
@@ -17,4 +17,4 @@ namespace petzval {
 /// does not see so far to the side.
 [[nodiscard]] std::optional<Lens> scaled_to_view(const Lens&, float film_height_mm, float yfov_rad);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Mean point of the plane that a film point in the middle column shows, by the rays' weights.
@@ -35,4 +35,4 @@ std::optional<float> equivalent_fov_deg(const Camera& camera, const FocusPlane& 
     return static_cast<float>(2 * std::atan(height_m / distance_m) * 180 / std::numbers::pi);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Factor on radiance, in nits, after which 1 is the exposure that saturates a camera of that
 /// speed: 78 lx s / ISO (ISO 12232:2019, saturation-based speed). irradiance: of the film's middle
@@ -21,4 +21,4 @@ namespace petzval {
     return iris_area_mm2 / (stop_radius_mm * stop_radius_mm) * sine * sine;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kFirstCells = 512;
@@ -127,4 +127,4 @@ std::vector<FilmRegion> film_regions(const Camera& camera, V2i size_px,
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

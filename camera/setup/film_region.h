@@ -9,7 +9,7 @@
 #include "core/film/film.h"
 #include "core/light/small_features.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Disjoint rectangles of a frame, pixels.
 struct FilmRegion {
@@ -32,4 +32,4 @@ struct FilmRegion {
 [[nodiscard]] std::vector<FilmRegion> film_regions(const Camera&, V2i size_px,
                                                    std::span<const SmallFeature>);
 
-}  // namespace petzval
+}  // namespace petzval::camera

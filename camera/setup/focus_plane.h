@@ -6,7 +6,7 @@
 
 #include "core/math/ray.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Plane of focus in world space, metres. axis: unit, the camera's viewing direction.
 struct FocusPlane {
@@ -25,4 +25,4 @@ struct FocusPlane {
     }
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 
 #include "camera/lens/paraxial.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 std::optional<FocusedLens> focused_from_pupil(const Lens& filed, double distance_mm, FocusBy by,
                                               double stop_radius_mm) {
@@ -30,4 +30,4 @@ std::optional<FocusedLens> focused_from_pupil(const Lens& filed, double distance
     return FocusedLens{*std::move(lens), pupil_mm};
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "camera/lens/focus.h"
 #include "camera/lens/lens.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 struct FocusedLens {
     Lens lens;
@@ -22,4 +22,4 @@ struct FocusedLens {
     const Lens&, double distance_mm, FocusBy = FocusBy::Paraxial,
     double stop_radius_mm = std::numeric_limits<double>::infinity());
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr uint32_t kRays = 1024;
@@ -38,4 +38,4 @@ double lateral_dispersion_px(const Camera& split, const Camera& shared, const Ob
     return lanes > 0 ? std::sqrt(sum / lanes) : 0;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

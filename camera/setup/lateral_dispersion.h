@@ -6,7 +6,7 @@
 #include "camera/setup/focus_plane.h"
 #include "core/spectrum/observer.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// RMS lateral dispersion in pixels: over film, iris and the wavelengths that the observer draws,
 /// the root of the mean square of how far a wavelength's ray meets the plane of focus from line
@@ -14,4 +14,4 @@ namespace petzval {
 [[nodiscard]] double lateral_dispersion_px(const Camera& split, const Camera& shared,
                                            const Observer&, const FocusPlane&, V2i size_px);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 #include "camera/lens/paraxial.h"
 #include "camera/setup/focused_lens.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 std::optional<LensBench> LensBench::focused(const Lens& lens, double distance_mm, FocusBy by) {
     auto sharp = focused_from_pupil(lens, distance_mm, by);
@@ -17,7 +17,7 @@ std::optional<LensBench> LensBench::focused(const Lens& lens, double distance_mm
 
 std::optional<double> LensBench::best_film_shift_mm() const {
     const double pupil_mm = first_order(*lens, kLineD_nm).entrance_pupil_mm;
-    return petzval::best_film_shift_mm(*lens, film_mm, pupil_mm - distance_mm);
+    return camera::best_film_shift_mm(*lens, film_mm, pupil_mm - distance_mm);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

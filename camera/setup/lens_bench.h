@@ -10,7 +10,7 @@
 #include "camera/lens/lens.h"
 #include "camera/lens/lens_options.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 struct LensBench {
     std::shared_ptr<const Lens> lens;
@@ -34,4 +34,4 @@ struct LensBench {
     [[nodiscard]] std::optional<double> best_film_shift_mm() const;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

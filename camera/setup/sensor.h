@@ -7,7 +7,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// The largest rectangle of an aspect (width / height) inside a sensor; width and height in mm.
 [[nodiscard]] inline V2f film_within(V2f sensor_mm, float aspect) {
@@ -24,4 +24,4 @@ namespace petzval {
     return {3 * unit_mm, 2 * unit_mm};
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 
 #include "camera/targets/stop_region.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Radius of the circle of confusion up to which a target counts as sharp.
@@ -130,4 +130,4 @@ std::optional<ListedTarget> list_target(const Target& target, const StopMap& map
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,11 +7,11 @@
 #include "camera/pose.h"
 #include "camera/targets/stop_map.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// A target made ready for the cell of a map, in a frame of so many pixels; nothing where none of
 /// the cell's rays passes it. iris_mm2: area of the iris.
 [[nodiscard]] std::optional<ListedTarget> list_target(const Target&, const StopMap&, const Pose&,
                                                       V2i frame_px, double iris_mm2);
 
-}  // namespace petzval
+}  // namespace petzval::camera

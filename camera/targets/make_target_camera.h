@@ -6,10 +6,10 @@
 
 #include "camera/target_camera.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Camera that aims the rays of another at targets, of which it has none yet; nullptr for one whose
 /// rays nobody can aim.
 [[nodiscard]] std::unique_ptr<TargetCamera> target_camera(const std::shared_ptr<const Camera>&);
 
-}  // namespace petzval
+}  // namespace petzval::camera

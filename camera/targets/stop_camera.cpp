@@ -5,7 +5,7 @@
 
 #include "camera/lens/trace.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using Asked = std::array<bool, kMostFilmPoints>;
@@ -232,4 +232,4 @@ void sample_through(const StopCamera& camera, std::span<const FilmPoint> points,
                camera);
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -15,7 +15,7 @@
 #include "camera/models/thin_lens.h"
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Line d, in light of which lanes count that have no wavelength, nm.
 inline constexpr auto kMiddle_nm = static_cast<float>(kLineD_nm);
@@ -72,4 +72,4 @@ void sample_through(const StopCamera&, std::span<const FilmPoint>, std::span<con
                     const std::array<bool, kMostFilmPoints>& asked,
                     std::array<StopCrossings, kMostFilmPoints>&);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr size_t kPoints = 160;  ///< of the stop, a multiple of 8
@@ -255,7 +255,7 @@ std::shared_ptr<const StopMap> StopMap::of(const StopCamera& camera, const FilmC
         for (size_t p = 0; p < kPoints; ++p) {
             if (!found[p].clear) continue;
             const auto v = map.parts(found[p]);
-            const f4 fitted = petzval::at(here, stop[p]);
+            const f4 fitted = camera::at(here, stop[p]);
             const auto apart = [&](size_t a, size_t b) {
                 return static_cast<float>(
                     std::hypot(v[a] - double(fitted[int(a)]), v[b] - double(fitted[int(b)])));
@@ -294,7 +294,7 @@ void StopMap::find_bounds() {
         std::array<f4, 9> around;
         for (int k = 0; k < 9; ++k)
             around[size_t(k)] =
-                petzval::at(middle, at_n + V2f(float(k % 3 - 1), float(k / 3 - 1)) * kStep);
+                camera::at(middle, at_n + V2f(float(k % 3 - 1), float(k / 3 - 1)) * kStep);
         const f4 xx = around[3] - 2 * around[4] + around[5],
                  yy = around[1] - 2 * around[4] + around[7],
                  xy = (around[0] + around[8] - around[2] - around[6]) / 4;
@@ -307,7 +307,7 @@ void StopMap::find_bounds() {
             const Rays there = rays(middle_ + corner * half_, nm);
             for (const V2f& s :
                  {V2f(0.f), V2f(0.9f, 0), V2f(-0.9f, 0), V2f(0, 0.9f), V2f(0, -0.9f)}) {
-                const f4 by = petzval::at(there, s) - petzval::at(middle, s);
+                const f4 by = camera::at(there, s) - camera::at(middle, s);
                 moves_.x = std::max(moves_.x, std::hypot(by[0], by[1]));
                 moves_.y = std::max(moves_.y, std::hypot(by[2], by[3]));
             }
@@ -354,4 +354,4 @@ f4 at(const StopMap::Rays& rays, V2f s) {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

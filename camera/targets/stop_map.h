@@ -10,7 +10,7 @@
 #include "camera/target.h"
 #include "camera/targets/stop_camera.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Polynomials, by least squares, of the rays of a cell: of degree 9 in the point of the stop, 2
 /// in the film point and 3 in the wavelength. (Polynomials of a lens: Hullin, Hanika and
@@ -106,4 +106,4 @@ class StopMap {
 /// A ray of a polynomial at a point of the stop.
 [[nodiscard]] f4 at(const StopMap::Rays&, V2f stop);
 
-}  // namespace petzval
+}  // namespace petzval::camera

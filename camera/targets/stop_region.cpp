@@ -8,7 +8,7 @@
 
 #include "core/sampling/warp.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr float kPi_f = static_cast<float>(kPi);
@@ -347,4 +347,4 @@ void StopRegion::correct(size_t ellipse, V2f landing) {
     shape.reach = kCorrectedReach;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

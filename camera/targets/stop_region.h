@@ -9,7 +9,7 @@
 #include "camera/target.h"
 #include "camera/targets/stop_map.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Landings on a target, in its radii, as polynomials of the point of the stop: as StopMap::Rays.
 struct LandingMap {
@@ -157,4 +157,4 @@ class StopRegion {
     return target.squares >> n & 1 ? 1 + target.in_radii(map.error(n)) : 0;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -5,7 +5,7 @@
 
 #include "core/sampling/warp.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 void trace_landings(const StopCamera& camera, std::span<const TargetView> views,
                     std::span<const V2f> stop_mm, std::span<std::optional<V2f>> out) {
@@ -73,4 +73,4 @@ float FilmEllipse::density_per_px2(V2f offset_px) const {
     return motion_.area() / (kPi * sqr(kCorrectedReach));
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "camera/targets/stop_camera.h"
 #include "camera/targets/stop_region.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// A target as a film point sees it at a wavelength.
 struct TargetView {
@@ -49,4 +49,4 @@ class FilmEllipse {
     V2f landing_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "camera/targets/list_target.h"
 #include "core/sampling/warp.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 V2f middle_of_pixel(const FilmPoint& point) {
@@ -231,4 +231,4 @@ void StopTargetCamera::sample_targets(std::span<const FilmPoint> points,
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

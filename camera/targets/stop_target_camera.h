@@ -9,7 +9,7 @@
 #include "camera/targets/stop_camera.h"
 #include "camera/targets/stop_search.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// A camera that draws points of its stop twice: from the iris, and where rays of the film point
 /// pass a target. Some of the latter draw the film point as well, within its pixel. Whatever the
@@ -62,4 +62,4 @@ class StopTargetCamera final : public TargetCamera {
     double iris_mm2_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::camera

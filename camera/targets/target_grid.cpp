@@ -8,7 +8,7 @@
 #include "camera/setup/film_region.h"
 #include "core/sampling/prepass_seed.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Side of a cell, so that a pilot of each stays below a quarter of a sample; in small frames it is
@@ -88,4 +88,4 @@ std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i s
     return any ? out : nullptr;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -9,7 +9,7 @@
 #include "camera/target_camera.h"
 #include "core/light/small_features.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// The ball around a lamp, as a target.
 [[nodiscard]] Target target_of(const SmallFeature& lamp);
@@ -23,4 +23,4 @@ namespace petzval {
     const TargetCamera&, V2i size_px, std::span<const SmallFeature>,
     const std::function<void()>& at_row = [] {});
 
-}  // namespace petzval
+}  // namespace petzval::camera

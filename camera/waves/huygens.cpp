@@ -5,7 +5,7 @@
 
 #include "camera/waves/point_spread.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Point where a ray meets the sphere, from the image point, and the optical path to there.
@@ -77,4 +77,4 @@ std::vector<double> huygens_spread(const AimedBundle& bundle, double film_mm,
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

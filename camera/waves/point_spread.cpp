@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace petzval {
+namespace petzval::camera {
 
 // Samples and cells are numbered from their corners: the middle of the film's grid is reached by
 // turning every second cell by half a wave; where the pupil's grid begins is a phase that no light
@@ -108,4 +108,4 @@ std::vector<double> radii_of_shares_mm(std::span<const PointSpread> spreads,
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 
 #include "camera/waves/pupil_function.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Image of a point on a grid of the film. Sample (i, j) lies (i - side / 2, j - side / 2) steps
 /// along x and y from the image point.
@@ -55,4 +55,4 @@ struct LineSpread {
                                                  std::span<const std::array<double, 2>> offsets_mm,
                                                  int side);
 
-}  // namespace petzval
+}  // namespace petzval::camera

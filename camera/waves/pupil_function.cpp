@@ -9,7 +9,7 @@
 
 #include "camera/waves/pupil_rays.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kOutside = -1e9;
@@ -162,4 +162,4 @@ PupilFunction moved(PupilFunction pupil, double shift_mm) {
     return pupil;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 
 #include "camera/waves/reference_sphere.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Grid of side x side cells over the pupil, in optical direction cosines.
 struct PupilGrid {
@@ -68,4 +68,4 @@ using StopTransmission = std::function<double(double, double)>;
 /// middle of the light.
 [[nodiscard]] PupilFunction moved(PupilFunction, double shift_mm);
 
-}  // namespace petzval
+}  // namespace petzval::camera

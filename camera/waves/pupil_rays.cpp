@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using D = Dual<d4>;
@@ -162,4 +162,4 @@ void find_pupil_rays(const AimedBundle& bundle, const ReferenceSphere& sphere,
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

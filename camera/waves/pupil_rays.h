@@ -6,7 +6,7 @@
 
 #include "camera/waves/pupil_function.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Ray in the middle of a cell.
 struct PupilRay {
@@ -22,4 +22,4 @@ struct PupilRay {
 void find_pupil_rays(const AimedBundle&, const ReferenceSphere&, const PupilGrid&,
                      const std::function<void(size_t, const PupilRay&)>&);
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -9,7 +9,7 @@
 #include "camera/bench/spot.h"
 #include "camera/waves/wavefront.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr int kLeastCells = 128, kMostCells = 256;  // across the pupil
@@ -209,4 +209,4 @@ std::optional<DiffractionLimits> diffraction_limits(const Lens& lens, double fil
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 
 #include "camera/waves/pupil_function.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// How far the contrast of an image in which each ray is spread by the pattern of its pupil without
 /// aberrations is from that by waves. It is near where the wave has hardly an error, and where the
@@ -62,4 +62,4 @@ struct WeighedWavelength {
     std::span<const WeighedWavelength>, double most_cycles_per_mm,
     const StopTransmission& iris = {});
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 #include "camera/bench/spot.h"
 #include "camera/lens/trace.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 double rim_mm(const Lens& lens) {
@@ -105,4 +105,4 @@ std::vector<OpdPoint> opd_fan(const AimedBundle& bundle, const ReferenceSphere& 
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

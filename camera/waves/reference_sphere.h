@@ -7,7 +7,7 @@
 
 #include "camera/bench/aimed_bundle.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 [[nodiscard]] inline double square(double a) {
     return a * a;
@@ -58,4 +58,4 @@ struct OpdPoint {
 [[nodiscard]] std::vector<OpdPoint> opd_fan(const AimedBundle&, const ReferenceSphere&,
                                             Section along, int count = 65);
 
-}  // namespace petzval
+}  // namespace petzval::camera

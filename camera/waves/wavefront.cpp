@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Solves a x = b for a symmetric matrix above 0, by Cholesky's method; empty where it is not.
@@ -144,4 +144,4 @@ double airy_radius_mm(double nm, double fnumber) {
     return first_zero / std::numbers::pi * nm * 1e-6 * fnumber;
 }
 
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 
 #include "camera/waves/pupil_function.h"
 
-namespace petzval {
+namespace petzval::camera {
 
 /// Wavefront about the image point on the film at which its RMS is least: the mean and the tilt are
 /// taken out. Each part of the pupil weighs by its light.
@@ -35,4 +35,4 @@ struct WavefrontFigures {
 /// where the pupil is too narrow to tell them apart.
 [[nodiscard]] std::vector<double> zernike_coefficients_mm(const PupilFunction&, int count);
 
-}  // namespace petzval
+}  // namespace petzval::camera

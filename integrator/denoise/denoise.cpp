@@ -7,7 +7,7 @@
 
 #include "integrator/denoise/half_tile.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 constexpr int kTile = kDenoiserTile_px, kSide = HalfTile::kSide;
@@ -248,4 +248,4 @@ void denoise_tile(const Film& film, const Rect& tile, Denoised& out) {
         }
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -10,7 +10,7 @@
 
 #include "core/film/film.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Denoised picture of a film's crop, row by row.
 struct Denoised {
@@ -58,4 +58,4 @@ template <class Executor>
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

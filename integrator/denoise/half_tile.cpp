@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/denoise/half_tile.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 /// Radius of the squares in which pixels are lonely, and in which variances are shared.
@@ -123,4 +123,4 @@ void HalfTile::share_variance() {
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -10,7 +10,7 @@
 #include "core/math/lanes.h"
 #include "integrator/denoise/denoise.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 [[nodiscard]] inline f8 load8(const float* from) {
     f8 out;
@@ -48,4 +48,4 @@ struct HalfTile {
     void share_variance();
 };
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -10,7 +10,7 @@
 #include "core/scene/volumes.h"
 #include "core/shading/surface.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// What a path crosses at a hit, where the hit's material refracts.
 struct Boundary {
@@ -126,4 +126,4 @@ template <class Caster>
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

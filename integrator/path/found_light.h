@@ -5,7 +5,7 @@
 
 #include "integrator/path/path.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Weight of a sample drawn with density a where b might have drawn it too. Veach 1997, "Robust
 /// Monte Carlo Methods for Light Transport Simulation", equation 9.13 with beta = 2.
@@ -94,4 +94,4 @@ template <RayCaster Caster, class Watch>
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

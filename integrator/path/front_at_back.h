@@ -9,7 +9,7 @@
 #include "core/math/math.h"
 #include "core/shading/surface.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// The face whose front a ray meets where it met the back of a single-sided surface: nothing where
 /// none lies there. Places count as one within four times what rounding may do to the back, so that
@@ -34,4 +34,4 @@ template <class Caster>
     return front;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

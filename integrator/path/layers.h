@@ -5,7 +5,7 @@
 #include "core/film/film.h"
 #include "core/shading/surface.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Surface that a sample sees first.
 struct FirstSurface {
@@ -42,4 +42,4 @@ inline void record_guide(const Surface& s, const V3f& normal, f4 albedo, const V
     out = {true, V3f(c[0], c[1], c[2]), normal, (s.p - camera).length()};
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -7,7 +7,7 @@
 #include "core/shading/surface.h"
 #include "integrator/path/stats.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// End of a shadow ray: a point, or a direction without end.
 struct WayToLight {
@@ -53,4 +53,4 @@ template <class Caster>
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/path/path_impl.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 template class PathTracer<Bvh>;
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -14,7 +14,7 @@
 #include "integrator/path/path_state.h"
 #include "integrator/path/watch.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Ray caster for paths: Bvh, or a test's own.
 template <class T>
@@ -93,4 +93,4 @@ class PathTracer {
 
 extern template class PathTracer<Bvh>;
 
-}  // namespace petzval
+}  // namespace petzval::integrator

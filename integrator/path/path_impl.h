@@ -7,7 +7,7 @@
 #include "integrator/path/path_steps.h"
 #include "integrator/path/sun_discs.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 template <RayCaster Caster, class Watch>
 f4 PathTracer<Caster, Watch>::radiance(const PathStart& start, const Bands& bands,
@@ -103,4 +103,4 @@ f4 PathTracer<Caster, Watch>::radiance(const PathStart& start, const Bands& band
     return path.radiance;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

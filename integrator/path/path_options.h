@@ -6,7 +6,7 @@
 
 #include "core/spectrum/bands.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Light transport technique. Mis: light and BSDF samples, weighted by the power heuristic. The
 /// other two are the halves of it, each complete by itself where it can reach the light at all;
@@ -23,4 +23,4 @@ struct PathOptions {
     bool transparent = false;  ///< camera rays that miss leave alpha 0 and no light
 };
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -12,7 +12,7 @@
 #include "integrator/path/boundary.h"
 #include "integrator/path/stats.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Last scattering of a path: the ray's origin, and the densities that weigh what the ray finds.
 struct Vertex {
@@ -103,4 +103,4 @@ struct Blend {
             coverage_number(ray.alpha_seed, h.instance, h.triangle)};
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -7,7 +7,7 @@
 #include "integrator/path/sampled_light.h"
 #include "integrator/path/start_volumes.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Density from which on a scattered direction counts as drawn by a narrow lobe, 1/sr: one of GGX
 /// with a roughness below 0.5 or so.
@@ -193,4 +193,4 @@ template <RayCaster Caster, class Watch>
     path.blends.clear();
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -8,7 +8,7 @@
 #include "integrator/path/found_light.h"
 #include "integrator/path/panes.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// The light sampler's view of a hit, without textures: position, normal, whether it transmits.
 /// Reflected light lies on the surface's own side, whatever the normal map.
@@ -160,4 +160,4 @@ f4 PathTracer<Caster, Watch>::direct_light(const PathState& path, const Scatteri
     return value.f_cos * light.radiance * left * (weight / light_pdf);
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -10,7 +10,7 @@
 #include "core/scene/volumes.h"
 #include "core/shading/surface.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Closed volumes that hold a point: those whose surface is left more often than entered on the way
 /// from there to infinity. A ray may meet an edge twice or slip through a seam, so that of three
@@ -49,4 +49,4 @@ template <class Caster>
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -9,7 +9,7 @@
 
 #include "camera/camera.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Timed sections. Sample is the whole; what the others leave of it is shading.
 enum class TimedSection : uint8_t { Sample, Camera, Traversal, Texture, Count };
@@ -32,7 +32,7 @@ struct PathStats {
     uint64_t vertices = 0;       ///< hits that were shaded
     uint64_t specular_ends = 0;  ///< paths that ended at PathOptions::max_specular_depth
     uint64_t tiles = 0;          ///< tiles that this worker rendered
-    LensLosses<uint64_t> lens_lanes;
+    camera::LensLosses<uint64_t> lens_lanes;
     ChanceFinds mirrored;  ///< of paths that met smooth surfaces only
     ChanceFinds caustic;   ///< of paths that met a rough one before
     bool timing = false;   ///< the samples under way are among those that are timed
@@ -81,4 +81,4 @@ decltype(auto) timed(PathStats& stats, TimedSection section, const F& f) {
     return f();
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

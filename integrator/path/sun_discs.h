@@ -6,7 +6,7 @@
 #include "core/scene/motion.h"
 #include "integrator/path/found_light.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 template <RayCaster Caster, class Watch>
 auto PathTracer<Caster, Watch>::sun_discs(const PathState& path) const -> FoundLight {
@@ -26,4 +26,4 @@ auto PathTracer<Caster, Watch>::sun_discs(const PathState& path) const -> FoundL
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -8,7 +8,7 @@
 #include "core/light/light_choice.h"
 #include "core/shading/surface.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Step of a path, with the members of PathEvent that it has. SampleRecord adds holes and what
 /// blocks, and distances. The last of a path says why it ends; light, that nothing is left.
@@ -66,4 +66,4 @@ struct PathRecorder : Unwatched {
     std::nullopt_t ends(PathStep why) const { return sees({.step = why}), std::nullopt; }
 };
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -7,11 +7,11 @@
 #include "core/shading/surface.h"
 #include "integrator/path/front_at_back.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
-std::optional<float> depth_under(const Scene& scene, const Bvh& bvh, const Camera& pinhole,
+std::optional<float> depth_under(const Scene& scene, const Bvh& bvh, const camera::Camera& pinhole,
                                  const V3f& eye, const V3f& axis, V2f film) {
-    const CameraSample seen =
+    const camera::CameraSample seen =
         pinhole.sample({film, Sampler(SamplerKind::Owen, 0, {0, 0, 0})}, Bands::rgb());
     if (seen.empty()) return std::nullopt;
     Ray ray = seen[0].ray;
@@ -24,8 +24,9 @@ std::optional<float> depth_under(const Scene& scene, const Bvh& bvh, const Camer
     return std::nullopt;
 }
 
-std::optional<float> depth_of_middle(const Scene& scene, const Bvh& bvh, const Camera& pinhole,
-                                     const V3f& eye, const V3f& axis) {
+std::optional<float> depth_of_middle(const Scene& scene, const Bvh& bvh,
+                                     const camera::Camera& pinhole, const V3f& eye,
+                                     const V3f& axis) {
     constexpr int side = 9;
     std::vector<float> depths;
     for (int j = 0; j < side; ++j) {
@@ -41,4 +42,4 @@ std::optional<float> depth_of_middle(const Scene& scene, const Bvh& bvh, const C
     return *middle;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

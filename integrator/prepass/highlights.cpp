@@ -13,7 +13,7 @@
 #include "core/spectrum/colour.h"
 #include "integrator/path/front_at_back.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 constexpr int kCell_px = 16;
@@ -350,16 +350,18 @@ std::optional<SmallFeature> image_from(HighlightSearch& search, const Start& sta
 }
 
 /// Rays of all cells of a frame that meet polished surfaces, the objects by turns.
-std::vector<Start> starts_of(const Camera& camera, HighlightSearch& search, V2i frame_px,
+std::vector<Start> starts_of(const camera::Camera& camera, HighlightSearch& search, V2i frame_px,
                              std::vector<std::vector<V3f>>& eyes) {
     const V2i cells = frame_px / kCell_px;
     std::map<uint32_t, std::vector<Start>> by_instance;
     for (int j = 0; j < cells.y; ++j)
         for (int i = 0; i < cells.x; ++i) {
             std::vector<V3f>& eyes_of_cell = eyes.emplace_back();
-            const FilmCell cell{V2f(V2i(i, j)) / V2f(cells), V2f(V2i(i + 1, j + 1)) / V2f(cells)};
+            const camera::FilmCell cell{V2f(V2i(i, j)) / V2f(cells),
+                                        V2f(V2i(i + 1, j + 1)) / V2f(cells)};
             for (const Ray& ray :
-                 bundle_of(camera, cell, number_of(PrepassSeed::Highlights), {i, j}, kRaysOfCell)
+                 camera::bundle_of(camera, cell, number_of(PrepassSeed::Highlights), {i, j},
+                                   kRaysOfCell)
                      .rays) {
                 eyes_of_cell.push_back(ray.origin);
                 if (const auto met = search.meet(ray.origin, ray.direction))
@@ -390,8 +392,9 @@ std::vector<Start> starts_of(const Camera& camera, HighlightSearch& search, V2i 
 
 }  // namespace
 
-std::vector<SmallFeature> highlights(const Camera& camera, const Scene& scene, const Bvh& bvh,
-                                     V2i frame_px, std::span<const SmallFeature> features) {
+std::vector<SmallFeature> highlights(const camera::Camera& camera, const Scene& scene,
+                                     const Bvh& bvh, V2i frame_px,
+                                     std::span<const SmallFeature> features) {
     const std::vector<Source> lamps = sources_of(scene, features);
     if (lamps.empty() || frame_px.x < kCell_px || frame_px.y < kCell_px) return {};
     const double pixels = double(frame_px.x) * double(frame_px.y);
@@ -419,4 +422,4 @@ std::vector<SmallFeature> highlights(const Camera& camera, const Scene& scene, c
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

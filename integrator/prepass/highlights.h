@@ -10,7 +10,7 @@
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Images of lamps in polished surfaces that a camera sees, as lamps at the places where they seem
 /// to be: at most 256, and none in a frame narrower than a cell of 16 pixels. Lamps are taken from
@@ -20,8 +20,8 @@ namespace petzval {
 /// looks for the point whose normal lies half-way between the directions to the lens and to the
 /// lamp. The same for other points of the lens: the image is where the rays seem to meet. At most
 /// an eighth of a ray is cast for a pixel. A pure function of the arguments.
-[[nodiscard]] std::vector<SmallFeature> highlights(const Camera&, const Scene&, const Bvh&,
+[[nodiscard]] std::vector<SmallFeature> highlights(const camera::Camera&, const Scene&, const Bvh&,
                                                    V2i frame_px,
                                                    std::span<const SmallFeature> features);
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -6,7 +6,7 @@
 #include "integrator/prepass/pilot_pixels.h"
 #include "integrator/render/sample_batch.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 constexpr uint32_t kPaths = 8192;
@@ -24,7 +24,7 @@ struct LightRecorder : Unwatched {
 }  // namespace
 
 LightChoice fitted_by_pilot(const LightChoice& choice, const Scene& scene, const Bvh& bvh,
-                            const Camera& camera, const Observer& observer, V2i frame_px) {
+                            const camera::Camera& camera, const Observer& observer, V2i frame_px) {
     if (!choice.divides()) return choice;
     const LightChoice even = choice.for_pilot();
     std::vector<LightRecord> records;
@@ -43,4 +43,4 @@ LightChoice fitted_by_pilot(const LightChoice& choice, const Scene& scene, const
     return choice.fitted(records);
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

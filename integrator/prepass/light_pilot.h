@@ -8,12 +8,12 @@
 #include "core/spectrum/observer.h"
 #include "core/traversal/bvh.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// The choice, fitted by a pilot where lights at infinity and others share it; the choice itself
 /// elsewhere. A pure function of its arguments: the pilot has a fixed number of paths over the full
 /// frame and numbers of its own.
 [[nodiscard]] LightChoice fitted_by_pilot(const LightChoice&, const Scene&, const Bvh&,
-                                          const Camera&, const Observer&, V2i frame_px);
+                                          const camera::Camera&, const Observer&, V2i frame_px);
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -9,7 +9,7 @@
 #include "core/sampling/warp.h"
 #include "core/shading/surface.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 constexpr uint32_t kRays = 256;
@@ -224,4 +224,4 @@ std::vector<LostLight> lost_light(const Scene& scene, const Bvh& bvh) {
     return search.out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -7,7 +7,7 @@
 #include "core/light/small_features.h"
 #include "core/traversal/bvh.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// A light, and the glass that most of what is lost goes through.
 struct LostLight {
@@ -32,4 +32,4 @@ inline constexpr double kHardlyAnyPath = 1e-4;
 /// a pure function of the scene.
 [[nodiscard]] std::vector<LostLight> lost_light(const Scene&, const Bvh&);
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 // Number of cells that a side is cut into.
@@ -51,4 +51,4 @@ std::vector<std::array<int, 2>> pilot_pixels(V2i size_px, int wanted, uint32_t s
     return pixels;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -8,7 +8,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// About so many pixels of a frame, a random one in each cell of an even grid, row by row. They
 /// follow from size, number and seed alone.
@@ -17,4 +17,4 @@ namespace petzval {
 /// Pixels of the grid's cell that a pixel lies in: cells differ by a row and a column.
 [[nodiscard]] int64_t pilot_cell_area_px(V2i size_px, int wanted, std::array<int, 2> pixel);
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -9,7 +9,7 @@
 #include "core/spectrum/colour.h"
 #include "integrator/path/path.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 /// Samples of a cell, rays to all of its targets, and to one of them.
@@ -62,21 +62,21 @@ struct CellFound {
 
 class CellPilot {
   public:
-    CellPilot(const TargetCamera& camera, const PathTracer<>& tracer, V2i frame_px)
+    CellPilot(const camera::TargetCamera& camera, const PathTracer<>& tracer, V2i frame_px)
         : camera_(camera), tracer_(tracer), frame_px_(frame_px) {}
 
     /// Samples of even points of a part of the film, which are drawn for a place of the frame; to:
     /// a target, or none for ordinary ones.
-    [[nodiscard]] Found samples(V2i drawn_for, const FilmCell& part, uint32_t count,
-                                const TargetCell* to) const {
+    [[nodiscard]] Found samples(V2i drawn_for, const camera::FilmCell& part, uint32_t count,
+                                const camera::TargetCell* to) const {
         Found out;
         PathStats stats;
-        for (uint32_t first = 0; first < count; first += kMostFilmPoints) {
-            std::array<FilmPoint, kMostFilmPoints> points;
-            std::array<Bands, kMostFilmPoints> bands;
-            std::array<CameraSample, kMostFilmPoints> paths;
-            std::array<const TargetCell*, kMostFilmPoints> cells{};
-            const auto n = std::min(count - first, static_cast<uint32_t>(kMostFilmPoints));
+        for (uint32_t first = 0; first < count; first += camera::kMostFilmPoints) {
+            std::array<camera::FilmPoint, camera::kMostFilmPoints> points;
+            std::array<Bands, camera::kMostFilmPoints> bands;
+            std::array<camera::CameraSample, camera::kMostFilmPoints> paths;
+            std::array<const camera::TargetCell*, camera::kMostFilmPoints> cells{};
+            const auto n = std::min(count - first, static_cast<uint32_t>(camera::kMostFilmPoints));
             for (uint32_t i = 0; i < n; ++i) {
                 const Sampler sampler(SamplerKind::Owen, number_of(PrepassSeed::Targets),
                                       {drawn_for.x, drawn_for.y, first + i});
@@ -86,13 +86,14 @@ class CellPilot {
                 cells[i] = to ? to : &camera_.targets()->at(points[i].film);
                 if (cells[i]->empty()) cells[i] = nullptr;
             }
-            const auto sample = to ? &TargetCamera::sample_targets : &TargetCamera::sample_beside;
+            const auto sample =
+                to ? &camera::TargetCamera::sample_targets : &camera::TargetCamera::sample_beside;
             (camera_.*sample)({points.data(), n}, {bands.data(), n}, {cells.data(), n},
                               {paths.data(), n});
             for (uint32_t i = 0; i < n; ++i) {
                 if (paths[i].empty()) continue;
                 f4 light{};
-                for (const CameraPath& path : paths[i]) {
+                for (const camera::CameraPath& path : paths[i]) {
                     FilmSample none;
                     light +=
                         path.weight * tracer_.radiance({path.ray, path.lanes, path.hero_decided,
@@ -110,29 +111,31 @@ class CellPilot {
 
   private:
     /// A film point in its pixel.
-    [[nodiscard]] FilmPoint at(V2f film, const Sampler& sampler) const {
+    [[nodiscard]] camera::FilmPoint at(V2f film, const Sampler& sampler) const {
         const V2f px = film * frame_px_;
         const V2f middle(std::floor(px.x) + 0.5f, std::floor(px.y) + 0.5f);
         return {film, sampler, {&filter_, px - middle, frame_px_}};
     }
 
-    const TargetCamera& camera_;
+    const camera::TargetCamera& camera_;
     const PathTracer<>& tracer_;
     V2f frame_px_;
     Filter filter_{FilterKind::Box, 0.5f};
 };
 
 /// Number of a target in another list; its size where it is not there.
-size_t place_in(const std::vector<ListedTarget>& list, const ListedTarget& target) {
-    const auto same = [&](const ListedTarget& other) { return other.number == target.number; };
+size_t place_in(const std::vector<camera::ListedTarget>& list, const camera::ListedTarget& target) {
+    const auto same = [&](const camera::ListedTarget& other) {
+        return other.number == target.number;
+    };
     return static_cast<size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
 }
 
 /// What is found in a cell and in those beside it: a few rays of one miss what a part of it sees.
-CellFound with_neighbours(const TargetGrid& grid, const std::vector<CellFound>& cells, int i,
-                          int j) {
+CellFound with_neighbours(const camera::TargetGrid& grid, const std::vector<CellFound>& cells,
+                          int i, int j) {
     const auto index = [&](int x, int y) { return static_cast<size_t>(y * grid.cells.x + x); };
-    const std::vector<ListedTarget>& list = grid.lists[index(i, j)].targets;
+    const std::vector<camera::ListedTarget>& list = grid.lists[index(i, j)].targets;
     CellFound out{{}, std::vector<Found>(list.size())};
     std::vector<int> counts(list.size());
     int count = 0;
@@ -171,8 +174,8 @@ struct CellChoice {
 };
 
 /// dark: luminance from which on variance is relative to the cell's own.
-CellChoice choice_of(const TargetCell& cell, const FilmCell& part, const CellFound& found,
-                     double dark) {
+CellChoice choice_of(const camera::TargetCell& cell, const camera::FilmCell& part,
+                     const CellFound& found, double dark) {
     CellChoice out;
     for (size_t k = 0; k < cell.targets.size(); ++k)
         if (found.sent[k].counted2 > 0) out.order.push_back(k);
@@ -206,7 +209,7 @@ CellChoice choice_of(const TargetCell& cell, const FilmCell& part, const CellFou
             const V2f within((float(n % kPlaces) + 0.5f) / kPlaces,
                              (float(n / kPlaces) + 0.5f) / kPlaces);
             const V2f film = part.first + within * (part.last - part.first);
-            sees[n] = cell.targets[k].seen_from.contains(FilmOctagon::along(film));
+            sees[n] = cell.targets[k].seen_from.contains(camera::FilmOctagon::along(film));
             seen += sees[n] ? 1. / double(places.size()) : 0;
         }
         if (seen == 0) sees.fill(true), seen = 1;
@@ -223,7 +226,7 @@ CellChoice choice_of(const TargetCell& cell, const FilmCell& part, const CellFou
                       double(places.size());
         }
         // More rays lower what they bring to the variance, and cost more.
-        for (uint32_t rays = 1; rays <= TargetCell::kMostRays; ++rays)
+        for (uint32_t rays = 1; rays <= camera::TargetCell::kMostRays; ++rays)
             out.efforts.push_back({std::sqrt((std::max(0., rest) + spread / rays) * scale),
                                    usual + rays * cost, rays, targets_taken});
     }
@@ -264,10 +267,11 @@ void take_best(std::vector<CellChoice>& cells) {
 
 }  // namespace
 
-std::shared_ptr<const TargetGrid> targets_that_pay(const TargetCamera& camera, const Scene& scene,
-                                                   const Bvh& bvh, const LightChoice& lights,
-                                                   V2i frame_px) {
-    const TargetGrid* const all = camera.targets().get();
+std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetCamera& camera,
+                                                           const Scene& scene, const Bvh& bvh,
+                                                           const LightChoice& lights,
+                                                           V2i frame_px) {
+    const camera::TargetGrid* const all = camera.targets().get();
     if (!all) return nullptr;
     const PathTracer<> tracer(scene, bvh, lights, {});
     const CellPilot pilot(camera, tracer, frame_px);
@@ -278,17 +282,17 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const TargetCamera& camera, c
     double mean = 0;
     for (int j = 0; j < all->cells.y; ++j)
         for (int i = 0; i < all->cells.x; ++i) {
-            const TargetCell& cell = all->lists[found.size()];
-            const FilmCell part = all->cell(i, j, frame_px);
+            const camera::TargetCell& cell = all->lists[found.size()];
+            const camera::FilmCell part = all->cell(i, j, frame_px);
             CellFound& here = found.emplace_back();
             here.ordinary = pilot.samples({i, j}, part, ordinary, nullptr);
             mean += here.ordinary.counted;
             const auto targets = static_cast<uint32_t>(cell.targets.size());
             const uint32_t sent = std::clamp(kSent / std::max(1u, targets), 1u, kMostSent);
-            for (const ListedTarget& target : cell.targets) {
-                TargetCell alone{cell.map, {target}};
+            for (const camera::ListedTarget& target : cell.targets) {
+                camera::TargetCell alone{cell.map, {target}};
                 alone.targets[0].chance = 1;
-                const FilmCell seen = target.seen_from.within(part);
+                const camera::FilmCell seen = target.seen_from.within(part);
                 Found found_there = pilot.samples({i, j}, seen, sent, &alone);
                 found_there.scale(double(seen.area() / part.area()));
                 here.sent.push_back(found_there);
@@ -305,12 +309,12 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const TargetCamera& camera, c
     take_best(cells);
     const Effort with = sum_of(cells);
     if (!(with.product() < kWorthIt * without.product())) return nullptr;
-    auto out = std::make_shared<TargetGrid>();
+    auto out = std::make_shared<camera::TargetGrid>();
     out->cells = all->cells;
     out->targets = all->targets;
     for (const CellChoice& cell : cells) {
-        const TargetCell& from = all->lists[out->lists.size()];
-        TargetCell& kept = out->lists.emplace_back();
+        const camera::TargetCell& from = all->lists[out->lists.size()];
+        camera::TargetCell& kept = out->lists.emplace_back();
         const auto [noise, cost, rays, targets] = cell.efforts[cell.taken];
         if (targets > 0) kept.map = from.map;
         kept.rays = rays;
@@ -327,4 +331,4 @@ std::shared_ptr<const TargetGrid> targets_that_pay(const TargetCamera& camera, c
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -7,15 +7,14 @@
 #include "core/scene/scene.h"
 #include "core/traversal/bvh.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Those of a camera's targets that pay, cell by cell; nullptr where there is none. Half of a
 /// chance is the same for all of a cell, half is in proportion to the light that each is found to
 /// bring. They pay where they lower the square of the frame's mean noise times its cost. A pure
 /// function of its arguments: at most 32 camera samples are rendered in a cell, in RGB, with
 /// numbers of their own.
-[[nodiscard]] std::shared_ptr<const TargetGrid> targets_that_pay(const TargetCamera&, const Scene&,
-                                                                 const Bvh&, const LightChoice&,
-                                                                 V2i frame_px);
+[[nodiscard]] std::shared_ptr<const camera::TargetGrid> targets_that_pay(
+    const camera::TargetCamera&, const Scene&, const Bvh&, const LightChoice&, V2i frame_px);
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Runs f(task, worker) for every task in [0, count); worker < threads(), and no two tasks run at
 /// once with the same worker.
@@ -89,4 +89,4 @@ class ThreadExecutor {
     int threads_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 /// Cell of a pixel along a side: edges lie at side * i / cells.
@@ -41,4 +41,4 @@ Rect NoiseCells::whole_cells(const Rect& crop) const {
     return {first.x0, first.y0, last.x1, last.y1};
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

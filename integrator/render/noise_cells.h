@@ -4,7 +4,7 @@
 
 #include "core/film/film.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Cells of kCell_px x kCell_px pixels, or a little more, that fill a frame.
 struct NoiseCells {
@@ -21,4 +21,4 @@ struct NoiseCells {
     [[nodiscard]] Rect whole_cells(const Rect& crop) const;
 };
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 /// Variance that may be there where an estimate hangs on few paths: on one four times as much.
@@ -273,4 +273,4 @@ NoiseReport noise_report(const std::vector<CellNoise>& found, const Rect& cells,
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

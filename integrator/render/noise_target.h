@@ -12,7 +12,7 @@
 #include "core/film/film.h"
 #include "integrator/render/noise_cells.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Noise to reach, for the cells of a full frame. The noise of a cell is the root of the mean, over
 /// its pixels and R, G and B, of variance / (mean^2 + floor^2).
@@ -111,4 +111,4 @@ struct NoiseReport {
                                        const NoiseTarget&, uint32_t most_samples);
 [[nodiscard]] NoiseReport noise_report(const Film&, const NoiseTarget&, uint32_t most_samples);
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -4,12 +4,12 @@
 #include "integrator/render/executor.h"
 #include "integrator/render/render_to_noise.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 template class SampleBatch<PathTracer<>>;
-template RenderResult render(const PathTracer<>&, const Camera&, const RenderJob&, Film&,
+template RenderResult render(const PathTracer<>&, const camera::Camera&, const RenderJob&, Film&,
                              TbbExecutor&, RenderMonitor&);
-template RenderResult render_to_noise(const PathTracer<>&, const Camera&, const RenderJob&, Film&,
-                                      TbbExecutor&, RenderMonitor&);
+template RenderResult render_to_noise(const PathTracer<>&, const camera::Camera&, const RenderJob&,
+                                      Film&, TbbExecutor&, RenderMonitor&);
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -10,7 +10,7 @@
 #include "integrator/render/tiles.h"
 #include "integrator/render/worker_stats.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Samples [first, end) of a pixel.
 struct PixelSamples {
@@ -20,7 +20,7 @@ struct PixelSamples {
 
 /// Renders samples of one pixel: each a pure function of job, pixel and index.
 template <class Tracer>
-void render_samples(const Tracer& tracer, const Camera& camera, const RenderJob& job,
+void render_samples(const Tracer& tracer, const camera::Camera& camera, const RenderJob& job,
                     const PixelSamples& wanted, Film& film, PathStats& stats) {
     SampleBatch<Tracer> batch(tracer, camera, job, film.full_size(), &film, stats);
     for (uint32_t i = wanted.first; i < wanted.end; ++i)
@@ -52,8 +52,8 @@ void render_samples(const Tracer& tracer, const Camera& camera, const RenderJob&
 /// tile size, the crop or the passes. A film that has samples of this job goes on from there: each
 /// pixel has the first taken_count() of them.
 template <class Executor, class Tracer>
-RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob& job, Film& film,
-                    Executor& executor, RenderMonitor& monitor) {
+RenderResult render(const Tracer& tracer, const camera::Camera& camera, const RenderJob& job,
+                    Film& film, Executor& executor, RenderMonitor& monitor) {
     const double start_s = job.wall_s();
     const std::vector<Rect> tiles = tiles_of(film.pixels(), job.tile_size_px);
     WorkerStats workers(executor.threads());
@@ -98,7 +98,7 @@ RenderResult render(const Tracer& tracer, const Camera& camera, const RenderJob&
 }
 
 class TbbExecutor;
-extern template RenderResult render(const PathTracer<>&, const Camera&, const RenderJob&, Film&,
-                                    TbbExecutor&, RenderMonitor&);
+extern template RenderResult render(const PathTracer<>&, const camera::Camera&, const RenderJob&,
+                                    Film&, TbbExecutor&, RenderMonitor&);
 
-}  // namespace petzval
+}  // namespace petzval::integrator

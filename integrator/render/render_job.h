@@ -14,7 +14,7 @@
 #include "core/spectrum/observer.h"
 #include "integrator/path/stats.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Seconds of a clock that never goes back.
 [[nodiscard]] inline double steady_s() {
@@ -68,4 +68,4 @@ struct RenderResult {
     bool stopped = false;     ///< the monitor said stop, and samples are left to render
 };
 
-}  // namespace petzval
+}  // namespace petzval::integrator

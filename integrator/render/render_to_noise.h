@@ -12,12 +12,12 @@
 #include "integrator/render/sample_batch.h"
 #include "integrator/render/worker_stats.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Renders the next step of the rows y0 .. y1 - 1 of a cell. Each pixel gets all of it or nothing.
 template <class Tracer>
-void render_rows(const Tracer& tracer, const Camera& camera, const RenderJob& job, const Rect& rows,
-                 const CellStep& step, Film& film, PathStats& stats) {
+void render_rows(const Tracer& tracer, const camera::Camera& camera, const RenderJob& job,
+                 const Rect& rows, const CellStep& step, Film& film, PathStats& stats) {
     SampleBatch<Tracer> batch(tracer, camera, job, film.full_size(), &film, stats);
     const auto each_pixel = [&](const auto& use) {
         for (int y = rows.y0; y < rows.y1; ++y)
@@ -109,8 +109,9 @@ class NoisyCells {
 /// job's noise, or its samples or time are over. A cell depends on nothing but itself: not on the
 /// executor, its threads, the crop, or on when it was stopped. A film of this job's goes on.
 template <class Executor, class Tracer>
-RenderResult render_to_noise(const Tracer& tracer, const Camera& camera, const RenderJob& job,
-                             Film& film, Executor& executor, RenderMonitor& monitor) {
+RenderResult render_to_noise(const Tracer& tracer, const camera::Camera& camera,
+                             const RenderJob& job, Film& film, Executor& executor,
+                             RenderMonitor& monitor) {
     const double start_s = job.wall_s();
     WorkerStats workers(executor.threads());
     NoisyCells cells(film, job);
@@ -146,7 +147,7 @@ RenderResult render_to_noise(const Tracer& tracer, const Camera& camera, const R
 }
 
 class TbbExecutor;
-extern template RenderResult render_to_noise(const PathTracer<>&, const Camera&, const RenderJob&,
-                                             Film&, TbbExecutor&, RenderMonitor&);
+extern template RenderResult render_to_noise(const PathTracer<>&, const camera::Camera&,
+                                             const RenderJob&, Film&, TbbExecutor&, RenderMonitor&);
 
-}  // namespace petzval
+}  // namespace petzval::integrator

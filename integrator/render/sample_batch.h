@@ -11,7 +11,7 @@
 #include "integrator/render/render_job.h"
 #include "integrator/render/velocity.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Seed of one of the replicates: a hash of the pair.
 [[nodiscard]] inline uint32_t replicate_seed(uint32_t seed, uint32_t replicate) {
@@ -34,8 +34,8 @@ template <class Tracer>
 class SampleBatch {
   public:
     /// All must outlive it. film: nullptr where only the paths' counts and records are wanted.
-    SampleBatch(const Tracer& tracer, const Camera& camera, const RenderJob& job, V2i frame_px,
-                Film* film, PathStats& stats)
+    SampleBatch(const Tracer& tracer, const camera::Camera& camera, const RenderJob& job,
+                V2i frame_px, Film* film, PathStats& stats)
         : tracer_(tracer),
           camera_(camera),
           job_(job),
@@ -47,7 +47,7 @@ class SampleBatch {
 
     void add(SampleId id) {
         ids_[size_++] = id;
-        if (size_ == kMostFilmPoints) render();
+        if (size_ == camera::kMostFilmPoints) render();
     }
     /// Renders the samples that are there. The name by which profilers know the sampling: it is
     /// called for eight samples at once, so that not to inline it costs nothing.
@@ -74,24 +74,24 @@ class SampleBatch {
     void trace(size_t i);
     void add_to_film(size_t i, FilmSample&, const std::array<f4, 2>& light);
     /// Light that one of the camera's rays brings to a sample.
-    [[nodiscard]] f4 light_along(const CameraPath& path, size_t i, const PathStart& start,
+    [[nodiscard]] f4 light_along(const camera::CameraPath& path, size_t i, const PathStart& start,
                                  FilmSample& out) {
         return path.weight * path.mis_weight *
                tracer_.radiance(start, bands_[i], points_[i].sampler, out, stats_);
     }
 
     const Tracer& tracer_;
-    const Camera& camera_;
+    const camera::Camera& camera_;
     const RenderJob& job_;
     V2i frame_px_;
     Film* film_;
     PathStats& stats_;
     bool has_layers_, has_guide_;
     size_t size_ = 0;
-    std::array<SampleId, kMostFilmPoints> ids_;
-    std::array<FilmPoint, kMostFilmPoints> points_;
-    std::array<Bands, kMostFilmPoints> bands_;
-    std::array<CameraSample, kMostFilmPoints> samples_;
+    std::array<SampleId, camera::kMostFilmPoints> ids_;
+    std::array<camera::FilmPoint, camera::kMostFilmPoints> points_;
+    std::array<Bands, camera::kMostFilmPoints> bands_;
+    std::array<camera::CameraSample, camera::kMostFilmPoints> samples_;
 };
 
 template <class Tracer>
@@ -110,7 +110,7 @@ void SampleBatch<Tracer>::find_camera_rays() {
         const V2f at = V2f(id.x + 0.5f, id.y + 0.5f) + offset;
         points_[i] = {at / size, sampler, {&job_.filter, offset, size}};
     }
-    const std::span<const FilmPoint> points(points_.data(), size_);
+    const std::span<const camera::FilmPoint> points(points_.data(), size_);
     const std::span<const Bands> bands(bands_.data(), size_);
     camera_.sample_all(points, bands, {samples_.data(), size_});
 }
@@ -118,14 +118,14 @@ void SampleBatch<Tracer>::find_camera_rays() {
 // Traces the rays of a sample.
 template <class Tracer>
 void SampleBatch<Tracer>::trace(size_t i) {
-    const CameraSample& rays = samples_[i];
+    const camera::CameraSample& rays = samples_[i];
     const uint64_t vertices_before = stats_.vertices;
     stats_.lens_lanes += rays.lanes;
     FilmSample sample;
     std::array<f4, 2> light{};  // in order, and of ghosts
     float behind = 0.f;         // weight of the rays that left the scene, over all lanes
     bool layers = has_layers_, guide = has_guide_;  // are still to be filled in
-    for (const CameraPath& path : rays) {
+    for (const camera::CameraPath& path : rays) {
         FilmSample other;
         FilmSample& of_path = path.to_target ? other : sample;
         of_path.alpha = 0.f;
@@ -174,4 +174,4 @@ void SampleBatch<Tracer>::add_to_film(size_t i, FilmSample& sample,
 
 extern template class SampleBatch<PathTracer<>>;
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -8,7 +8,7 @@
 #include "integrator/path/path_impl.h"
 #include "integrator/render/sample_batch.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 /// Appends the surfaces with holes in their coverage on a way, in the order of distance.
@@ -39,7 +39,7 @@ void add_holes(const Scene& scene, const V3f& from, const V3f& to, float time,
 }  // namespace
 
 SampleRecord SampleRecord::of(const Scene& scene, const Bvh& bvh, const LightChoice& lights,
-                              const PathOptions& options, const Camera& camera,
+                              const PathOptions& options, const camera::Camera& camera,
                               const RenderJob& job, V2i frame_px, SampleId id) {
     SampleRecord out;
     std::vector<PathEvent> events;
@@ -60,7 +60,7 @@ SampleRecord SampleRecord::of(const Scene& scene, const Bvh& bvh, const LightCho
     size_t path = 0;
     for (PathEvent& event : events) {
         if (event.step == PathStep::Begins) {
-            const CameraPath& of = out.rays[path++];
+            const camera::CameraPath& of = out.rays[path++];
             event.lanes = zero_off(of.lanes, of.weight * of.mis_weight);
             begin = event.ray;
             from = begin.origin;
@@ -84,4 +84,4 @@ SampleRecord SampleRecord::of(const Scene& scene, const Bvh& bvh, const LightCho
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -8,21 +8,21 @@
 #include "integrator/path/path.h"
 #include "integrator/render/render_job.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 struct SampleRecord {
     V2f point_px{0.f};  ///< on the film, from the top left
     Bands bands;
-    LensLosses<uint32_t> lens;
-    std::vector<CameraPath> rays;   ///< those to targets last
-    std::vector<PathEvent> events;  ///< path by path, one for each ray
-    V4f film{0.f};                  ///< that the film gets: R, G, B in nits, alpha
-    bool left_out = false;          ///< the film takes no such number: not finite, or too large
+    camera::LensLosses<uint32_t> lens;
+    std::vector<camera::CameraPath> rays;  ///< those to targets last
+    std::vector<PathEvent> events;         ///< path by path, one for each ray
+    V4f film{0.f};                         ///< that the film gets: R, G, B in nits, alpha
+    bool left_out = false;  ///< the film takes no such number: not finite, or too large
 
     /// Takes a sample as a render of the job does, bit for bit, and tells how it comes about.
     [[nodiscard]] static SampleRecord of(const Scene&, const Bvh&, const LightChoice&,
-                                         const PathOptions&, const Camera&, const RenderJob&,
-                                         V2i frame_px, SampleId);
+                                         const PathOptions&, const camera::Camera&,
+                                         const RenderJob&, V2i frame_px, SampleId);
 };
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 // Position of cell (x, y) along the Hilbert curve over a square of `side` cells, a power of two.
@@ -46,4 +46,4 @@ std::vector<Rect> tiles_of(const Rect& crop, int size_px) {
     return tiles;
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

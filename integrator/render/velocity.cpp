@@ -3,10 +3,10 @@
 
 #include "core/scene/motion.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 V3f Velocity::at(const Hit& hit, const V2f& film_px) const {
-    const auto seen = [&](const Scene& scene, const Shutter* shutter) {
+    const auto seen = [&](const Scene& scene, const camera::Shutter* shutter) {
         const V3f p = point_at(scene, hit.instance, hit.triangle, hit.barycentric, hit.time);
         return shutter ? shutter->seen_from_middle(p, hit.time) : V3d(p);
     };
@@ -18,4 +18,4 @@ V3f Velocity::at(const Hit& hit, const V2f& film_px) const {
     return {static_cast<float>(then->x - now->x), static_cast<float>(then->y - now->y), 0.f};
 }
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -9,7 +9,7 @@
 #include "core/film/film.h"
 #include "core/scene/scene.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// The scene and its camera one frame later, and how the camera pictures points.
 class Velocity {
@@ -17,8 +17,9 @@ class Velocity {
     /// All must outlive it. next: the scene a frame later, of the same meshes and instances.
     /// shutter: of this frame, nullptr where nothing moves; next_shutter: of the next one, in which
     /// the camera's places are told against the middle of this frame.
-    Velocity(const Scene& scene, const Scene& next, const Camera& finder, V2i size_px,
-             std::shared_ptr<const Shutter> shutter, std::shared_ptr<const Shutter> next_shutter)
+    Velocity(const Scene& scene, const Scene& next, const camera::Camera& finder, V2i size_px,
+             std::shared_ptr<const camera::Shutter> shutter,
+             std::shared_ptr<const camera::Shutter> next_shutter)
         : scene_(scene),
           next_(next),
           projection_(finder, size_px),
@@ -33,8 +34,8 @@ class Velocity {
   private:
     const Scene& scene_;
     const Scene& next_;
-    FilmProjection projection_;
-    std::shared_ptr<const Shutter> shutter_, next_shutter_;
+    camera::FilmProjection projection_;
+    std::shared_ptr<const camera::Shutter> shutter_, next_shutter_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -7,7 +7,7 @@
 
 #include "integrator/path/stats.h"
 
-namespace petzval {
+namespace petzval::integrator {
 
 /// Counts of each worker of an executor.
 class WorkerStats {
@@ -33,4 +33,4 @@ class WorkerStats {
     std::vector<Worker> workers_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -14,7 +14,7 @@
 #include "io/base/nearest.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace fs = std::filesystem;
 namespace {
 
@@ -44,13 +44,13 @@ int count_of(double value) {
     return value >= 0 && value <= 1e6 && value == std::floor(value) ? static_cast<int>(value) : -1;
 }
 
-std::optional<ApertureShape> built_in(const std::string& as_typed) {
+std::optional<camera::ApertureShape> built_in(const std::string& as_typed) {
     const std::string text = lower(as_typed);
-    if (text == "circle") return Disk();
-    if (text == "square") return square();
-    if (text == "triangle") return regular_polygon(3);
-    if (text == "rhomboid") return rhomboid();
-    if (text == "frame") return frame();
+    if (text == "circle") return camera::Disk();
+    if (text == "square") return camera::square();
+    if (text == "triangle") return camera::regular_polygon(3);
+    if (text == "rhomboid") return camera::rhomboid();
+    if (text == "frame") return camera::frame();
     const size_t colon = text.find(':');
     const std::string name = text.substr(0, colon);
     if (name != "star" && name != "polygon") return std::nullopt;
@@ -59,9 +59,9 @@ std::optional<ApertureShape> built_in(const std::string& as_typed) {
     const auto v = numbers_of(std::string_view(text).substr(colon + 1));
     if (!v || v->size() > (name == "star" ? 1 : 3)) throw ArgumentError(text, "", kPossible);
     try {
-        if (name == "star") return star(count_of((*v)[0]));
-        return regular_polygon(count_of((*v)[0]), v->size() > 1 ? (*v)[1] : 0,
-                               v->size() > 2 ? (*v)[2] : 0);
+        if (name == "star") return camera::star(count_of((*v)[0]));
+        return camera::regular_polygon(count_of((*v)[0]), v->size() > 1 ? (*v)[1] : 0,
+                                       v->size() > 2 ? (*v)[2] : 0);
     } catch (const std::invalid_argument& error) {
         throw ArgumentError(text, "", error.what());
     }
@@ -69,8 +69,8 @@ std::optional<ApertureShape> built_in(const std::string& as_typed) {
 
 }  // namespace
 
-ApertureShape parse_aperture(const std::string& text, const fs::path& folder,
-                             PictureBudget pictures) {
+camera::ApertureShape parse_aperture(const std::string& text, const fs::path& folder,
+                                     PictureBudget pictures) {
     if (auto shape = built_in(text)) return *shape;
     const fs::path path = folder / text;
     const std::string ending = lower(path.extension().string());
@@ -84,7 +84,7 @@ ApertureShape parse_aperture(const std::string& text, const fs::path& folder,
     return read_mask_aperture(path, pictures);
 }
 
-Mask read_mask_aperture(const fs::path& path, PictureBudget pictures) {
+camera::Mask read_mask_aperture(const fs::path& path, PictureBudget pictures) {
     constexpr uint64_t mask_bytes_per_texel = 20;  // its texels and the table that draws points
     const Picture picture = read_picture(path, pictures, mask_bytes_per_texel);
     const int red = channel_index(picture, "R"), green = channel_index(picture, "G"),
@@ -92,7 +92,7 @@ Mask read_mask_aperture(const fs::path& path, PictureBudget pictures) {
     const bool colour = red >= 0 && green >= 0 && blue >= 0;
     // EXR alone stores colours that are multiplied by alpha already.
     const bool by_alpha = alpha >= 0 && lower(path.extension().string()) != ".exr";
-    Mask mask{picture.width, picture.height, {}};
+    camera::Mask mask{picture.width, picture.height, {}};
     mask.texels.reserve(static_cast<size_t>(picture.width) * picture.height);
     for (size_t i = 0; i < picture.pixels.size(); i += picture.channels.size()) {
         const float* p = &picture.pixels[i];
@@ -104,9 +104,9 @@ Mask read_mask_aperture(const fs::path& path, PictureBudget pictures) {
         const float clamped = std::clamp(open, 0.f, 1.f);  // keeps what is no number
         mask.texels.push_back(std::fabs(open - clamped) <= kRounding ? clamped : open);
     }
-    if (const auto fault = find_fault(mask))
+    if (const auto fault = camera::find_fault(mask))
         throw InputError(path.string(), "", *fault + "; 0 is opaque and 1 is open");
     return mask;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

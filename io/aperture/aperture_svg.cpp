@@ -13,7 +13,7 @@
 #include "io/file/read_file.h"
 #include "io/file/text_lines.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr size_t kMaxBytes = 4 << 20;
@@ -47,7 +47,7 @@ class SvgFile {
             throw InputError(file_, "", "is no SVG; its first element must be svg");
     }
 
-    [[nodiscard]] Polygon polygon() const {
+    [[nodiscard]] camera::Polygon polygon() const {
         const pugi::xml_node shape = find_shape();
         svg::Outline outline = outline_of(shape);
         const Imath::M33d matrix = matrix_of(shape);
@@ -56,12 +56,13 @@ class SvgFile {
             for (svg::Cubic& curve : subpath.curves)
                 curve.a *= matrix, curve.b *= matrix, curve.end *= matrix;
         }
-        Polygon polygon{flatten(outline), is_even_odd(shape)};
-        if (const auto fault = find_fault(polygon))
+        camera::Polygon polygon{flatten(outline), is_even_odd(shape)};
+        if (const auto fault = camera::find_fault(polygon))
             throw InputError(file_, place(shape).place, fault->message);
-        const V2d centre = centre_of(polygon);
+        const camera::V2d centre = centre_of(polygon);
         for (auto& contour : polygon.contours)
-            for (V2d& p : contour) p = {p.x - centre.x, centre.y - p.y};  // SVG's y points down
+            for (camera::V2d& p : contour)
+                p = {p.x - centre.x, centre.y - p.y};  // SVG's y points down
         return polygon;
     }
 
@@ -158,28 +159,32 @@ class SvgFile {
             return read_svg_points(node.attribute("points").value(), place(node, "points"));
         if (name == "rect") return rectangle(node);
         const bool circle = name == "circle";
-        const V2d radii(positive(node, circle ? "r" : "rx"), positive(node, circle ? "r" : "ry"));
-        const V2d centre(length(node, "cx", 0), length(node, "cy", 0));
-        svg::Subpath round{centre + V2d(radii.x, 0), {}};
+        const camera::V2d radii(positive(node, circle ? "r" : "rx"),
+                                positive(node, circle ? "r" : "ry"));
+        const camera::V2d centre(length(node, "cx", 0), length(node, "cy", 0));
+        svg::Subpath round{centre + camera::V2d(radii.x, 0), {}};
         add_ellipse_arc(round, centre, radii, 0, 0, 2 * std::numbers::pi);
         round.curves.back().end = round.start;
         return {round};
     }
 
     [[nodiscard]] svg::Outline rectangle(const pugi::xml_node& node) const {
-        const V2d low(length(node, "x", 0), length(node, "y", 0));
-        const V2d size(positive(node, "width"), positive(node, "height"));
+        const camera::V2d low(length(node, "x", 0), length(node, "y", 0));
+        const camera::V2d size(positive(node, "width"), positive(node, "height"));
         double rx = length(node, "rx", -1), ry = length(node, "ry", -1);
         if (rx < 0) rx = std::max(ry, 0.0);  // one of them alone stands for both
         if (ry < 0) ry = rx;
         rx = std::min(rx, size.x / 2), ry = std::min(ry, size.y / 2);
-        const V2d inner_low = low + V2d(rx, ry), inner_high = low + size - V2d(rx, ry);
-        const std::array<V2d, 4> centres = {V2d(inner_high.x, inner_low.y), inner_high,
-                                            V2d(inner_low.x, inner_high.y), inner_low};
+        const camera::V2d inner_low = low + camera::V2d(rx, ry),
+                          inner_high = low + size - camera::V2d(rx, ry);
+        const std::array<camera::V2d, 4> centres = {
+            camera::V2d(inner_high.x, inner_low.y), inner_high,
+            camera::V2d(inner_low.x, inner_high.y), inner_low};
         svg::Subpath out{{inner_low.x, low.y}, {}};
         for (int i = 0; i < 4; ++i) {
             const double from = (i - 1) * std::numbers::pi / 2;
-            const V2d start = centres[i] + V2d(rx * std::cos(from), ry * std::sin(from));
+            const camera::V2d start =
+                centres[i] + camera::V2d(rx * std::cos(from), ry * std::sin(from));
             out.curves.push_back({start, start, start, true});
             if (rx > 0 && ry > 0)
                 add_ellipse_arc(out, centres[i], {rx, ry}, 0, from, std::numbers::pi / 2);
@@ -195,15 +200,15 @@ class SvgFile {
         return all;
     }
 
-    [[nodiscard]] V2d centre_of(const Polygon& polygon) const {
+    [[nodiscard]] camera::V2d centre_of(const camera::Polygon& polygon) const {
         const pugi::xml_node root = document_.document_element();
         if (const auto box = root.attribute("viewBox")) {
             const auto v = read_svg_numbers(box.value(), 4, place(root, "viewBox"));
             return {v[0] + v[2] / 2, v[1] + v[3] / 2};
         }
-        Imath::Box<V2d> box;
+        Imath::Box<camera::V2d> box;
         for (const auto& contour : polygon.contours)
-            for (const V2d& p : contour) box.extendBy(p);
+            for (const camera::V2d& p : contour) box.extendBy(p);
         return box.center();
     }
 
@@ -214,8 +219,8 @@ class SvgFile {
 
 }  // namespace
 
-Polygon read_svg_aperture(const std::filesystem::path& path) {
+camera::Polygon read_svg_aperture(const std::filesystem::path& path) {
     return SvgFile(path).polygon();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

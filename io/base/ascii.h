@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Text with its ASCII letters in lower case, whatever the locale; other bytes as they are.
 [[nodiscard]] inline std::string lower(std::string text) {
@@ -12,4 +12,4 @@ namespace petzval {
     return text;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

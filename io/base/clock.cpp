@@ -3,7 +3,7 @@
 
 #include <sys/resource.h>
 
-namespace petzval {
+namespace petzval::io {
 
 double process_cpu_s() {
     const auto seconds = [](const timeval& t) {
@@ -14,4 +14,4 @@ double process_cpu_s() {
     return seconds(self.ru_utime) + seconds(self.ru_stime);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

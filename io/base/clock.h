@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace petzval {
+namespace petzval::io {
 
 /// CPU time of all threads of this process so far, seconds.
 [[nodiscard]] double process_cpu_s();
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Fault in what the user gave. what() reads "FILE: PLACE: MESSAGE", or "FILE: MESSAGE" where the
 /// place is the whole file. place: a JSON path such as /accessors/3/byteOffset, or a line. message:
@@ -68,4 +68,4 @@ class ArgumentError : public InputError {
     using InputError::InputError;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Text "x,y,z" of a V3f or an Rgb, as options take it: with the fewest digits that read back the
 /// same.
@@ -19,4 +19,4 @@ namespace petzval {
                        : fmt::format("{:.0f} %", 100 * share);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include "io/base/error.h"
 #include "io/base/json_parse.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -191,4 +191,4 @@ std::vector<size_t> JsonCursor::indices(const char* key, size_t count, const cha
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

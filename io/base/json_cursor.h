@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Range of a number, both ends included.
 struct Range {
@@ -93,4 +93,4 @@ class JsonCursor {
     std::string path_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

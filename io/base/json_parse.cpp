@@ -10,7 +10,7 @@
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -157,4 +157,4 @@ std::string text_of(const nlohmann::json& owner, const char* key) {
     return text.is_string() ? text.get<std::string>() : std::string();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 
 #include "io/base/printable.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Greatest nesting depth of containers: far more than any scene needs, far less than a stack
 /// holds.
@@ -25,4 +25,4 @@ inline constexpr int max_json_depth = 128;
 /// Text of a member; empty where there is none.
 [[nodiscard]] std::string text_of(const nlohmann::json& owner, const char* key);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -164,4 +164,4 @@ uint64_t usable_memory_bytes(const fs::path& root) {
     return least;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Number of threads that can run at once: the processors of the affinity mask, and no more than
 /// the CPU quota of the control groups (versions 1 and 2), rounded up. At least 1. root: folder in
@@ -16,4 +16,4 @@ namespace petzval {
 /// and the limit on the address space.
 [[nodiscard]] uint64_t usable_memory_bytes(const std::filesystem::path& root = "/");
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include "io/base/nearest.h"
 #include "io/base/printable.h"
 
-namespace petzval {
+namespace petzval::io {
 
 std::optional<size_t> find_named(const std::string& wanted, const std::vector<std::string>& names) {
     for (size_t i = 0; i < names.size(); ++i)
@@ -39,4 +39,4 @@ std::string no_such(const std::string& kind, const std::string& wanted,
                        did_you_mean(wanted, shown));
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Index of the first thing that has this name, as it stands or as messages show it; else of the
 /// one with this number. Absent where there is none.
@@ -23,4 +23,4 @@ namespace petzval {
                                   const std::vector<std::string>& names,
                                   const std::string& otherwise);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -11,7 +11,7 @@
 
 #include "io/base/ascii.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// No known word is longer by much, and the distance takes time in proportion.
@@ -73,4 +73,4 @@ std::string did_you_mean_or(const std::string& there_are, const std::string& tex
     return near.empty() ? fmt::format("; {} {}", there_are, fmt::join(known, ", ")) : near;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

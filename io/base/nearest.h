@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Edit distance: letters to insert, leave out or replace, and neighbours to exchange, no letter
 /// twice. Damerau 1964, "A technique for computer detection and correction of spelling errors".
@@ -26,4 +26,4 @@ namespace petzval {
 [[nodiscard]] std::string did_you_mean_or(const std::string& there_are, const std::string& text,
                                           const std::vector<std::string>& known);
 
-}  // namespace petzval
+}  // namespace petzval::io

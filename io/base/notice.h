@@ -4,9 +4,9 @@
 #include <functional>
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Receives one line of text for the user: a choice made without being asked, or something odd.
 using Notice = std::function<void(const std::string&)>;
 
-}  // namespace petzval
+}  // namespace petzval::io

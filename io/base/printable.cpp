@@ -7,7 +7,7 @@
 #include <array>
 #include <cctype>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 struct CodeRange {
@@ -99,4 +99,4 @@ std::string for_shell(const std::string& word) {
     return quoted + "'";
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace petzval {
+namespace petzval::io {
 
 struct Character {
     uint32_t code;
@@ -29,4 +29,4 @@ struct Character {
 /// Word as one of a command line, between quotes where a shell would divide or change it.
 [[nodiscard]] std::string for_shell(const std::string& word);
 
-}  // namespace petzval
+}  // namespace petzval::io

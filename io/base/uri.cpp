@@ -5,7 +5,7 @@
 
 #include "io/base/ascii.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 int base64_digit(char c) {
@@ -98,4 +98,4 @@ std::optional<std::string> relative_path(std::string_view uri) {
     return path;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

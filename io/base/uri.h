@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// The content of a "data:" URI (RFC 2397).
 struct DataUri {
@@ -33,4 +33,4 @@ struct DataUri {
 /// nothing when it has a scheme or a host, is absolute or empty, or an escape hides a zero byte.
 [[nodiscard]] std::optional<std::string> relative_path(std::string_view uri);
 
-}  // namespace petzval
+}  // namespace petzval::io

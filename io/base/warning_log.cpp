@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 bool is_digit(char c) {
@@ -47,4 +47,4 @@ std::vector<std::string> WarningLog::lines() const {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Warnings of a reader, one line each. Lines that differ in their numbers and quoted words only
 /// are one warning: the first is kept, the others are counted. So a file with a million faults of
@@ -34,4 +34,4 @@ class WarningLog {
     std::map<std::string, size_t> by_shape_;  ///< place in first_
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

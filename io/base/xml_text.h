@@ -3,7 +3,7 @@
 
 #include "io/base/printable.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Text for XML and HTML, in elements and attributes; every character of it shows (visible()).
 [[nodiscard]] inline std::string xml_text(std::string_view text) {
@@ -17,4 +17,4 @@ namespace petzval {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "build_facts.h"  // made by sources.cmake
 #include "io/file/read_file.h"
 
-namespace petzval {
+namespace petzval::io {
 
 std::string build_description() {
     return fmt::format("sources: {}\ncompiler: {}\nlibraries: glibc {}, {}", kBuildSources,
@@ -22,4 +22,4 @@ std::string program_version() {
                        fnv1a({reinterpret_cast<const uint8_t*>(text.data()), text.size()}));
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Facts of the build, one a line: the SHA-256 of the sources, the compiler with its flags, and the
 /// libraries. The same for two checkouts in different folders. The C library is
@@ -14,4 +14,4 @@ namespace petzval {
 /// "petzval 0.2.0 (build 0123456789abcdef)": the number is the FNV-1a hash of build_description().
 [[nodiscard]] std::string program_version();
 
-}  // namespace petzval
+}  // namespace petzval::io

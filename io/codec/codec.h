@@ -16,7 +16,7 @@
 
 // A namespace of its own: io/image has functions of the same names, and the linker of a program
 // that exports its symbols would take those for these.
-namespace petzval::codec {
+namespace petzval::io::codec {
 
 [[nodiscard]] Picture read_picture(const std::filesystem::path&, PictureBudget&,
                                    std::optional<uint64_t> kept_per_pixel);
@@ -38,4 +38,4 @@ inline constexpr std::string_view kOwnMetadata = "petzval:";
     return message.find("Premature end") != std::string::npos;
 }
 
-}  // namespace petzval::codec
+}  // namespace petzval::io::codec

@@ -12,7 +12,7 @@
 
 #include "io/base/printable.h"
 
-namespace petzval::codec {
+namespace petzval::io::codec {
 namespace {
 
 using Bytes = std::span<const uint8_t>;
@@ -149,4 +149,4 @@ std::string other_space_of_png(Bytes file, Bytes profile) {
     return chrm == chunks.end() ? "" : space_of_chromaticities(chrm->second);
 }
 
-}  // namespace petzval::codec
+}  // namespace petzval::io::codec

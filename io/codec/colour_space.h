@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace petzval::codec {
+namespace petzval::io::codec {
 
 /// Colour space of a PNG by its chunks, in words; empty where it is sRGB, or nothing is said. cICP
 /// comes before iCCP, that before sRGB, and that before gAMA and cHRM (PNG, third edition, section
@@ -18,4 +18,4 @@ namespace petzval::codec {
 /// curve, not by its name. ICC.1:2022, sections 7 and 10.
 [[nodiscard]] std::string other_space_of_profile(std::span<const uint8_t> profile);
 
-}  // namespace petzval::codec
+}  // namespace petzval::io::codec

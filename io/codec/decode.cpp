@@ -14,7 +14,7 @@
 #include "io/picture/picture_kind.h"
 #include "io/picture/seal.h"
 
-namespace petzval::codec {
+namespace petzval::io::codec {
 namespace {
 
 /// Ending of the format, where it is one that glTF has; else empty.
@@ -123,4 +123,4 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& file,
     return image;
 }
 
-}  // namespace petzval::codec
+}  // namespace petzval::io::codec

@@ -9,7 +9,7 @@
 #include "io/codec/codec.h"
 #include "io/picture/image_codec.h"
 
-namespace petzval::codec {
+namespace petzval::io::codec {
 namespace {
 
 void limit_threads(int threads) {
@@ -29,8 +29,8 @@ ImageCodec made_at_load() {
 const ImageCodec kCodec = made_at_load();
 
 }  // namespace
-}  // namespace petzval::codec
+}  // namespace petzval::io::codec
 
-extern "C" [[gnu::visibility("default")]] const petzval::ImageCodec* petzval_image_codec() {
-    return &petzval::codec::kCodec;
+extern "C" [[gnu::visibility("default")]] const petzval::io::ImageCodec* petzval_image_codec() {
+    return &petzval::io::codec::kCodec;
 }

@@ -15,7 +15,7 @@
 #include "io/picture/limits.h"
 #include "io/picture/picture_kind.h"
 
-namespace petzval::codec {
+namespace petzval::io::codec {
 namespace {
 
 /// The attributes of the file that are one number or one text; not those OpenImageIO adds for
@@ -151,4 +151,4 @@ Metadata read_metadata(const std::filesystem::path& path) {
     return out;
 }
 
-}  // namespace petzval::codec
+}  // namespace petzval::io::codec

@@ -13,7 +13,7 @@
 #include "io/base/printable.h"
 #include "io/codec/codec.h"
 
-namespace petzval::codec {
+namespace petzval::io::codec {
 namespace {
 
 /// A font opened for letters of one size.
@@ -102,4 +102,4 @@ Picture draw_text(const std::string& utf8, int letter_px, const std::filesystem:
     return letters;
 }
 
-}  // namespace petzval::codec
+}  // namespace petzval::io::codec

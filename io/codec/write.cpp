@@ -14,7 +14,7 @@
 #include "io/picture/picture_kind.h"
 #include "io/picture/seal.h"
 
-namespace petzval::codec {
+namespace petzval::io::codec {
 namespace {
 
 /// Output of OpenImageIO's writers into an AtomicFile. None of them hears of a write that failed:
@@ -144,4 +144,4 @@ void write_8bit(const std::filesystem::path& path, const PictureRows& encoded, b
     });
 }
 
-}  // namespace petzval::codec
+}  // namespace petzval::io::codec

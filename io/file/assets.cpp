@@ -6,7 +6,7 @@
 #include "io/base/error.h"
 #include "io/file/program_file.h"
 
-namespace petzval {
+namespace petzval::io {
 
 std::filesystem::path asset(const std::string& relative) {
     std::filesystem::path there =
@@ -16,4 +16,4 @@ std::filesystem::path asset(const std::string& relative) {
     throw InputError(there.string(), "", "is missing; install Petzval again with cmake --install");
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Path of an asset, of which that in the folder assets is relative: "color/config.ocio". Throws
 /// InputError where it is missing.
 [[nodiscard]] std::filesystem::path asset(const std::string& relative);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -18,7 +18,7 @@
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -323,4 +323,4 @@ void check_writable(const fs::path& path) {
     const TemporaryFile trial(folder_of(follow_links(path), path), path);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

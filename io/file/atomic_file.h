@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-namespace petzval {
+namespace petzval::io {
 
 /// A file that takes the place of its target, with the permissions of a file that was there, once
 /// it is committed; before, the target is as it was. Where the file system can, it has no name
@@ -48,4 +48,4 @@ void write_file_atomically(const std::filesystem::path&, std::string_view text);
 /// be changed.
 void check_writable(const std::filesystem::path&);
 
-}  // namespace petzval
+}  // namespace petzval::io

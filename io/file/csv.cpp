@@ -12,7 +12,7 @@
 #include "io/file/read_file.h"
 #include "io/file/text_lines.h"
 
-namespace petzval {
+namespace petzval::io {
 
 CsvText read_csv_text(const std::filesystem::path& path, const std::vector<uint8_t>* bytes) {
     std::string text = bytes ? std::string(bytes->begin(), bytes->end()) : text_of_file(path);
@@ -86,4 +86,4 @@ std::string csv_text(const std::vector<std::string>& names,
     return text;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Table whose cells are text without the spaces around it, or finite numbers.
 template <class Cell>
@@ -41,4 +41,4 @@ using CsvTable = Table<double>;
 [[nodiscard]] std::string csv_text(const std::vector<std::string>& names,
                                    const std::vector<std::vector<double>>& rows);
 
-}  // namespace petzval
+}  // namespace petzval::io

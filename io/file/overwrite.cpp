@@ -9,7 +9,7 @@
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,4 +73,4 @@ void refuse_overwriting(const std::vector<NamedFile>& outputs,
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

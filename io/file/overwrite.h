@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// A file that a command reads or writes, and what it is to the user: "--env", "the scene".
 struct NamedFile {
@@ -23,4 +23,4 @@ struct NamedFile {
 void refuse_overwriting(const std::vector<NamedFile>& outputs,
                         const std::vector<NamedFile>& inputs);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 // Folder of Petzval's own program, in those that PetzvalConfig.cmake gives this function.
 extern "C" [[gnu::weak]] const char* petzval_installed_bin();
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,4 +39,4 @@ fs::path installed_file(const fs::path& relative) {
     return (own_folder() / relative).lexically_normal();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

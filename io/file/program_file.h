@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Path of a file that is installed with Petzval, from its path relative to the folder of programs.
 /// It lies in the installation that a program of others found by find_package(Petzval), or that
@@ -11,4 +11,4 @@ namespace petzval {
 /// InputError where the program does not know its own place.
 [[nodiscard]] std::filesystem::path installed_file(const std::filesystem::path& relative);
 
-}  // namespace petzval
+}  // namespace petzval::io

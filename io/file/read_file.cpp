@@ -15,7 +15,7 @@
 #include "io/base/machine.h"
 #include "io/file/text_lines.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Size of file for which nobody need be asked whether there is memory.
@@ -116,4 +116,4 @@ std::string name_and_hash(const std::filesystem::path& path) {
     return fmt::format("{} ({:016x})", path.filename().string(), fnv1a(file.bytes));
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// A regular file that is open for reading: the one door through which files come in. Pipes and
 /// devices are refused: they may never end. So are empty files, and what a download left in a
@@ -58,4 +58,4 @@ struct FileBytes {
 /// such file.
 [[nodiscard]] std::string name_and_hash(const std::filesystem::path&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "io/base/error.h"
 #include "io/file/atomic_file.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -85,4 +85,4 @@ void attempt_all(const std::vector<std::function<void()>>& actions) {
     if (failed > 1) throw OutputError(messages);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Outcome of writing a file.
 struct WriteOutcome {
@@ -31,4 +31,4 @@ struct WriteOutcome {
 /// after it.
 void attempt_all(const std::vector<std::function<void()>>& actions);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "io/base/error.h"
 #include "io/file/read_file.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr uintmax_t kMaxBytes = 16 << 20;
@@ -108,4 +108,4 @@ std::optional<double> finite_number(std::string_view text) {
     return value;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 struct TextLine {
     int number;        ///< from 1
@@ -42,4 +42,4 @@ struct TextLine {
 /// A finite number and nothing else, whatever the locale; a leading + is allowed.
 [[nodiscard]] std::optional<double> finite_number(std::string_view);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -14,7 +14,7 @@
 #include "io/base/json_parse.h"
 #include "io/file/text_lines.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 // Dispersion formulas by Zemax's number, from 1, and how many coefficients each has; 0: not
@@ -172,4 +172,4 @@ bool has_index_of_glass(const Glass& glass) {
     return true;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

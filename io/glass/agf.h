@@ -11,7 +11,7 @@
 
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// One catalogue. Its glasses are those of a maker whose name is the file's, without the ending.
 class AgfCatalog {
@@ -53,4 +53,4 @@ class AgfCatalog {
 /// Whether the index is from 1 to 5 at every nm from 360 to 830.
 [[nodiscard]] bool has_index_of_glass(const Glass&);
 
-}  // namespace petzval
+}  // namespace petzval::io

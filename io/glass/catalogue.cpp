@@ -14,7 +14,7 @@
 #include "io/file/csv.h"
 #include "io/glass/agf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 // Columns of assets/glass/catalog.csv.
@@ -133,4 +133,4 @@ std::vector<std::string> glasses_near(const std::string& text) {
     return near;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

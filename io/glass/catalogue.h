@@ -7,7 +7,7 @@
 
 #include "core/spectrum/glass.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// All glasses of the catalogue, in the order of the file. Takes a few ms. Throws InputError where
 /// the program is not whole.
@@ -17,4 +17,4 @@ namespace petzval {
 /// maker may be missing or wrong.
 [[nodiscard]] std::vector<std::string> glasses_near(const std::string& text);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include "io/base/printable.h"
 #include "io/glass/catalogue.h"
 
-namespace petzval {
+namespace petzval::io {
 
 void LensGlasses::read_assets() {
     if (!assets_.empty()) return;
@@ -63,4 +63,4 @@ Glass constant_glass(double n) {
     return {fmt::format("{}", n), IndexSeries{{{n, 0}}}};
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

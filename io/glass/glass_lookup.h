@@ -11,7 +11,7 @@
 #include "core/spectrum/glass.h"
 #include "io/glass/agf.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// A glass, or why there is none.
 struct FoundGlass {
@@ -44,4 +44,4 @@ class LensGlasses {
 /// A glass without dispersion, called "N".
 [[nodiscard]] Glass constant_glass(double n);
 
-}  // namespace petzval
+}  // namespace petzval::io

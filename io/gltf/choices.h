@@ -6,7 +6,7 @@
 
 #include "io/gltf/animation/choice.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Choices that a glTF file leaves to its user.
 struct GltfChoices {
@@ -19,4 +19,4 @@ struct GltfChoices {
     [[nodiscard]] bool operator==(const GltfChoices&) const = default;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,13 +5,13 @@
 
 #include "io/base/error.h"
 #include "io/gltf/exporter/lost.h"
+#include "io/gltf/geometry/place.h"
 #include "io/gltf/image_light.h"
 #include "io/gltf/info.h"
 #include "io/gltf/lights.h"
-#include "io/gltf/place.h"
 #include "io/gltf/validate/extras.h"
 
-namespace petzval {
+namespace petzval::io {
 
 struct GltfReader::Impl {
     std::string name;
@@ -106,4 +106,4 @@ GltfFile load_gltf(const std::filesystem::path& path) {
     return load_gltf(path, FileScope::Anywhere, pictures);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -16,7 +16,7 @@
 #include "io/gltf/validate/source.h"
 #include "io/picture/picture_budget.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// A camera node of the file.
 struct GltfCamera {
@@ -76,4 +76,4 @@ class GltfReader {
 /// Loads a scene that may name any file, with the usual budget.
 [[nodiscard]] GltfFile load_gltf(const std::filesystem::path&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -11,7 +11,7 @@
 #include "io/base/json_cursor.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr const char* kImageBasedLights = "EXT_lights_image_based";
@@ -133,4 +133,4 @@ std::optional<Sky> read_image_light(const GltfModel& gltf, const GltfNodes& node
                       [&](const V3f& d) { return radiance_of_irradiance(harmonics, d); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "core/scene/sky.h"
-#include "io/gltf/model.h"
-#include "io/gltf/nodes.h"
-#include "io/gltf/tally.h"
+#include "io/gltf/document/model.h"
+#include "io/gltf/document/nodes.h"
+#include "io/gltf/document/tally.h"
 #include "io/picture/picture_budget.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Sky that the drawn scene names: the first level of its cube, which is not blurred; where an
 /// image of that is not there, what its spherical harmonics of the irradiance tell. Nothing where
@@ -18,4 +18,4 @@ namespace petzval {
 [[nodiscard]] std::optional<Sky> read_image_light(const GltfModel&, const GltfNodes&, GltfTally&,
                                                   PictureBudget&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "io/base/json_parse.h"
 #include "io/gltf/schema/extensions.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 std::string plural(uint64_t count, std::string_view one, std::string_view more) {
@@ -255,4 +255,4 @@ std::vector<std::string> table_of(const std::vector<ExtensionInFile>& extensions
     return lines;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -2,11 +2,11 @@
 // Contents of a glTF file, in numbers and in words.
 #pragma once
 
+#include "io/gltf/document/model.h"
+#include "io/gltf/document/tally.h"
 #include "io/gltf/gltf.h"
-#include "io/gltf/model.h"
-#include "io/gltf/tally.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Counts what a file holds. scene: what the loader made of it.
 [[nodiscard]] GltfSummary summarise(const GltfModel&, const GltfTally&, const Scene&);
@@ -20,4 +20,4 @@ void describe(const GltfModel&, const GltfTally&, const std::optional<AnimationC
 /// One line for each extension: its name, what becomes of it, and what that does to the picture.
 [[nodiscard]] std::vector<std::string> table_of(const std::vector<ExtensionInFile>&);
 
-}  // namespace petzval
+}  // namespace petzval::io

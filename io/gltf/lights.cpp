@@ -8,11 +8,11 @@
 #include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
 #include "io/gltf/animation/thinning.h"
+#include "io/gltf/materials/spectral.h"
 #include "io/gltf/schema/schema.h"
-#include "io/gltf/spectral.h"
 #include "io/gltf/validate/extras.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Direction of the node's own -z axis; nothing where a scale of zero leaves none.
@@ -380,4 +380,4 @@ std::vector<GltfCamera> read_cameras(const GltfModel& gltf, const GltfNodes& nod
     return cameras;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,12 +9,12 @@
 #include "core/scene/lamp.h"
 #include "core/scene/scene.h"
 #include "io/gltf/animation/node_motion.h"
+#include "io/gltf/document/model.h"
+#include "io/gltf/document/nodes.h"
+#include "io/gltf/document/tally.h"
 #include "io/gltf/gltf.h"
-#include "io/gltf/model.h"
-#include "io/gltf/nodes.h"
-#include "io/gltf/tally.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Adds the punctual lights of the scene's nodes, in depth-first order, but those of no intensity;
 /// and the illuminants that they name. Those with a radius are returned, and are not yet in the
@@ -40,4 +40,4 @@ void move_last_light(const NodeMotion&, int node, Scene&, GltfTally&,
 [[nodiscard]] std::vector<GltfCamera> read_cameras(const GltfModel&, const GltfNodes&,
                                                    const NodeMotion&, GltfTally&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,10 +5,10 @@
 #include "io/base/error.h"
 #include "io/base/json_cursor.h"
 #include "io/gltf/lights.h"
-#include "io/gltf/spectral.h"
+#include "io/gltf/materials/spectral.h"
 #include "io/ies/ies.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Unit axes of a node, x and y across the way it looks, -z. Mirrored where its matrix mirrors.
@@ -103,4 +103,4 @@ void read_profile_lights(const GltfModel& gltf, const GltfNodes& nodes, const No
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

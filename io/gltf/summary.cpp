@@ -7,10 +7,10 @@
 
 #include "io/base/json_cursor.h"
 #include "io/base/json_parse.h"
+#include "io/gltf/document/variants.h"
 #include "io/gltf/info.h"
-#include "io/gltf/variants.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -107,4 +107,4 @@ GltfSummary summarise(const GltfModel& gltf, const GltfTally& tally, const Scene
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 
 #include "io/gltf/schema/extensions.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Names are as in the file; an unnamed thing has an empty one.
 struct GltfSummary {
@@ -43,4 +43,4 @@ struct GltfSummary {
     Lights lights;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -14,7 +14,7 @@
 #include "io/base/printable.h"
 #include "io/file/text_lines.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr double kMostCandela = 1e20;
@@ -219,4 +219,4 @@ IesFile parse_ies(std::string_view text, const std::string& file, const std::str
             std::move(remarks)};
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 
 #include "core/scene/light_profile.h"
 
-namespace petzval {
+namespace petzval::io {
 
 struct IesFile {
     LightProfile profile;
@@ -22,4 +22,4 @@ struct IesFile {
 [[nodiscard]] IesFile parse_ies(std::string_view text, const std::string& file,
                                 const std::string& place);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::io {
 
 Canvas::Canvas(int width, int height, const Colour8& ground)
     : width_(width), height_(height), pixels_(size_t(width) * size_t(height), ground) {}
@@ -39,4 +39,4 @@ void Canvas::read(int y, float* row) const {
         for (const uint8_t value : pixels_[at(x, y)]) *row++ = float(value) / 255.f;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

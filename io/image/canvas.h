@@ -8,7 +8,7 @@
 #include "io/image/reduce.h"
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::io {
 
 class Canvas {
   public:
@@ -31,4 +31,4 @@ class Canvas {
     std::vector<Colour8> pixels_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

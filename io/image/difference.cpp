@@ -17,7 +17,7 @@
 #include "io/image/spectral_layout.h"
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 std::string layer_of(const std::string& channel) {
@@ -168,4 +168,4 @@ std::vector<LayerDifference> compare_files(const std::filesystem::path& a,
     return compare(picture_a, picture_b);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

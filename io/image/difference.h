@@ -11,7 +11,7 @@
 #include "io/picture/picture.h"
 #include "io/picture/picture_budget.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Added to the square of the reference in relative_mse, so that black does not divide by zero:
 /// Rousselle et al. 2011, "Adaptive Sampling and Reconstruction using Greedy Error Minimization",
@@ -52,4 +52,4 @@ struct LayerDifference {
                                                          const std::filesystem::path& b,
                                                          PictureBudget = PictureBudget());
 
-}  // namespace petzval
+}  // namespace petzval::io

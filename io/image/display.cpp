@@ -16,7 +16,7 @@
 #include "io/file/text_lines.h"
 #include "io/image/ocio_config.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace ocio = OCIO_NAMESPACE;
@@ -233,4 +233,4 @@ PictureRows as_display(const PictureRows& shown) {
     return {std::move(layout), row};
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Default view of Petzval's configuration, the plain sRGB curve: a picture shows what its numbers
 /// say. ACES must be asked for.
@@ -42,4 +42,4 @@ enum class AlphaUse : uint8_t {
 /// and B, or Y as each of them, and its A. Throws InputError where it has none of these colours.
 [[nodiscard]] PictureRows as_display(const PictureRows& shown);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -14,7 +14,7 @@
 #include "io/file/text_lines.h"
 #include "io/image/ocio_config.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,4 +145,4 @@ std::vector<fs::path> display_files(const fs::path& config) {
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 std::array<int, 3> colour_channels(const Picture& picture, const std::filesystem::path& path) {
@@ -102,4 +102,4 @@ Sky load_sky(const std::filesystem::path& path, float rotate_deg, float strength
                        [&] { return decode(path, rotate_deg, strength, notice, budget); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

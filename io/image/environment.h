@@ -8,7 +8,7 @@
 #include "io/base/notice.h"
 #include "io/picture/picture_budget.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Sky from an equirectangular Radiance (.hdr) or OpenEXR (.exr) picture, linear sRGB in nits or
 /// grey (Y). rotate_deg turns it about +y, counter-clockwise seen from above; strength multiplies
@@ -18,4 +18,4 @@ namespace petzval {
 [[nodiscard]] Sky load_sky(const std::filesystem::path&, float rotate_deg, float strength,
                            const Notice& notice, PictureBudget&);
 
-}  // namespace petzval
+}  // namespace petzval::io

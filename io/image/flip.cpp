@@ -10,7 +10,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using M33d = Imath::M33d;
@@ -222,4 +222,4 @@ double Flip::mean(const Picture& test) const {
     return std::accumulate(errors.begin(), errors.end(), 0.) / static_cast<double>(errors.size());
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

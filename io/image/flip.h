@@ -9,7 +9,7 @@
 #include "core/math/math.h"
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Pixels per degree of a monitor 0.7 m wide with 3840 pixels, seen from 0.7 m: the paper's choice.
 inline constexpr double kFlipPixelsPerDegree = 67;
@@ -50,4 +50,4 @@ class Flip {
     Seen reference_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,7 +5,7 @@
 
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Size below which letters cannot be read: on a sheet of small cells, and of large ones, which are
@@ -49,4 +49,4 @@ Picture fitting_label(const std::string& utf8, int letter_px, int width_px,
     return letters.width <= width_px ? letters : draw_text("", letter_px, font);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Size of letters at which the widest of these labels is as wide as a cell: letter_px where it
 /// fits as it is, and never so small that it cannot be read.
@@ -20,4 +20,4 @@ namespace petzval {
 [[nodiscard]] Picture fitting_label(const std::string& utf8, int letter_px, int width_px,
                                     const std::filesystem::path& font);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// A configuration, and the files that it is read from.
 struct OcioConfig {
@@ -22,4 +22,4 @@ struct OcioConfig {
 /// pipe or a device.
 [[nodiscard]] OcioConfig open_ocio_config(const std::filesystem::path&);
 
-}  // namespace petzval
+}  // namespace petzval::io

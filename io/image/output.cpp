@@ -8,7 +8,7 @@
 #include "io/base/error.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::io {
 
 void check_output(const std::filesystem::path& path, const DisplayOptions& display, int width,
                   int height) {
@@ -49,4 +49,4 @@ std::vector<WriteOutcome> write_partial(const std::vector<std::filesystem::path>
     return written;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

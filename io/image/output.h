@@ -11,7 +11,7 @@
 #include "io/image/display.h"
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Display settings of PNG and JPEG; EXR is always scene-linear.
 struct DisplayOptions {
@@ -36,4 +36,4 @@ void write_output(const std::filesystem::path&, const PictureRows& linear, const
 [[nodiscard]] std::vector<WriteOutcome> write_partial(
     const std::vector<std::filesystem::path>& outputs, const PictureRows& linear);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -11,7 +11,7 @@
 #include "io/file/program_file.h"
 #include "io/picture/image_codec.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 InputError cannot_load(const std::filesystem::path& path, const std::string& why) {
@@ -86,4 +86,4 @@ void limit_picture_threads(int threads) {
     if (threads < usable_threads()) image_codec().limit_threads(threads);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -16,7 +16,7 @@
 #include "io/picture/picture_budget.h"
 #include "io/picture/picture_kind.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Reads every channel as floats; converts nothing but integers, to [0, 1]. kept_per_pixel: bytes
 /// that the caller keeps of each pixel beside the floats, which it then drops; absent where it
@@ -60,4 +60,4 @@ void load_image_codec();
 /// once (usable_threads). They do not change a byte.
 void limit_picture_threads(int threads);
 
-}  // namespace petzval
+}  // namespace petzval::io

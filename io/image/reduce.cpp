@@ -7,7 +7,7 @@
 #include "core/math/math.h"
 #include "core/spectrum/colour.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// What of the reduced pixel `to` a pixel makes up, and what of the one behind it.
@@ -113,4 +113,4 @@ Picture8 reduced(const PictureRows& display, int width, int height, const Colour
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

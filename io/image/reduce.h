@@ -8,7 +8,7 @@
 
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::io {
 
 using Colour8 = std::array<uint8_t, 3>;  ///< R, G, B as an sRGB display takes them
 
@@ -25,4 +25,4 @@ struct Picture8 {
 [[nodiscard]] Picture8 reduced(const PictureRows& display, int width, int height,
                                const Colour8& ground);
 
-}  // namespace petzval
+}  // namespace petzval::io

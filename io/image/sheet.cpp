@@ -15,7 +15,7 @@
 #include "io/image/label.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Many programs count a picture's rows with 16 bits; a JPEG has JPEG_MAX_DIMENSION of libjpeg.
@@ -167,4 +167,4 @@ void ContactSheet::write(const std::filesystem::path& path, bool srgb) const {
     write_8bit(path, drawing.rows(), srgb);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

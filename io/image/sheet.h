@@ -12,7 +12,7 @@
 #include "io/image/sheet_layout.h"
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::io {
 
 inline constexpr Colour8 kSheetGround{38, 38, 38};      ///< between and behind the pictures
 inline constexpr Colour8 kSheetMissing{64, 64, 64};     ///< in place of a picture
@@ -57,4 +57,4 @@ class ContactSheet {
     std::vector<SheetCell> cells_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 SheetLayout with_columns(int columns, size_t pictures, const SheetOptions& o, int width_px,
@@ -65,4 +65,4 @@ SheetLayout sheet_layout(size_t pictures, const SheetOptions& o, int picture_wid
     return best;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace petzval {
+namespace petzval::io {
 
 /// How a contact sheet is to look.
 struct SheetOptions {
@@ -49,4 +49,4 @@ struct SheetSize {
 /// Size of a sheet whose pictures all have the size that its layout is for.
 [[nodiscard]] SheetSize size_of(const SheetLayout&, const SheetOptions&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr std::string_view kPrefix = "S0.";
@@ -111,4 +111,4 @@ std::vector<std::array<double, 2>> spectrum_of_pixel(const Picture& picture,
     return spectrum;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -12,7 +12,7 @@
 
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Channel name of unpolarised light at a wavelength, "S0.385,0nm": rounded to picometres, always
 /// with a comma.
@@ -36,4 +36,4 @@ struct SpectralChannel {
 [[nodiscard]] std::vector<std::array<double, 2>> spectrum_of_pixel(
     const Picture&, const std::filesystem::path& file, int x, int y);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Squared relative difference of two values, (a - b)^2 / ((a^2 + b^2) / 2 + floor^2): 0 to 2 where
 /// neither is negative, the same for light that is lost and light that is added. The symmetric MSE
@@ -46,4 +46,4 @@ class SymmetricFloor {
     double lightness_ = 0, logs_ = 0;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

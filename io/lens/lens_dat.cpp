@@ -10,7 +10,7 @@
 #include "io/file/text_lines.h"
 #include "io/lens/lens_formats.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 std::array<double, 4> columns(const TextLine& line, const std::vector<std::string>& word,
@@ -44,7 +44,7 @@ LensFile read_lens_dat(std::string_view text, const std::string& file, const std
         };
         const auto [radius_mm, thickness_mm, stated_index, diameter_mm] = columns(line, word, file);
         const double index = stated_index < 1 && stated_index > 0.998 ? 1 : stated_index;  // air
-        LensSurface surface;
+        camera::LensSurface surface;
         surface.curvature_1_mm = radius_mm == 0 ? 0 : 1 / radius_mm;
         surface.thickness_mm = thickness_mm;
         surface.semi_diameter_mm = diameter_mm / 2;
@@ -67,4 +67,4 @@ LensFile read_lens_dat(std::string_view text, const std::string& file, const std
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "io/base/xml_text.h"
 #include "io/file/atomic_file.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 struct Bounds {
@@ -24,23 +24,23 @@ struct Bounds {
 };
 
 // Path data of an outline; SVG's y points down. 0 - h: no -0.0000.
-std::string path_data(const Outline& points, bool closed) {
+std::string path_data(const camera::Outline& points, bool closed) {
     std::string out;
     for (const auto& [z, height] : points)
         out += fmt::format("{}{:.4f} {:.4f}", out.empty() ? "M" : "L", z, 0 - height);
     return out + (closed ? "Z" : "");
 }
 
-std::string path_element(const std::string& attributes, const Outline& points,
+std::string path_element(const std::string& attributes, const camera::Outline& points,
                          bool closed = false) {
     return fmt::format("<path {} d=\"{}\"/>\n", attributes, path_data(points, closed));
 }
 
-Bounds bounds_of(const Lens& lens, const LensDrawing& drawing) {
+Bounds bounds_of(const camera::Lens& lens, const LensDrawing& drawing) {
     Bounds out;
     out.add(drawing.film_mm, drawing.film_radius_mm);
     for (int i = 0; i < lens.size(); ++i)
-        for (const auto& [z, height] : surface_outline(lens, i, drawing.section))
+        for (const auto& [z, height] : camera::surface_outline(lens, i, drawing.section))
             out.add(z, height);
     // Rays may come from far to the side: only points within 1.5 times the lens's height count.
     const double most = 1.5 * out.top;
@@ -51,7 +51,7 @@ Bounds bounds_of(const Lens& lens, const LensDrawing& drawing) {
     return {out.left - margin, out.right + margin, out.top + margin};
 }
 
-std::string stop_paths(const Lens& lens) {
+std::string stop_paths(const camera::Lens& lens) {
     const double z = lens.vertex_mm(lens.stop());
     const double edge =
         lens.prescription().surfaces[static_cast<size_t>(lens.stop())].semi_diameter_mm;
@@ -63,7 +63,7 @@ std::string stop_paths(const Lens& lens) {
 
 }  // namespace
 
-std::string lens_svg(const Lens& lens, const LensDrawing& drawing) {
+std::string lens_svg(const camera::Lens& lens, const LensDrawing& drawing) {
     constexpr double width_px = 1200;
     const Bounds bounds = bounds_of(lens, drawing);
     const double width = bounds.right - bounds.left, text = 0.013 * width;
@@ -85,14 +85,15 @@ std::string lens_svg(const Lens& lens, const LensDrawing& drawing) {
         bounds.left, -bounds.top, width, height);
     out += path_element("class=\"axis\"", {{bounds.left, 0}, {bounds.right, 0}});
     for (int i = 0; i < lens.size(); ++i)
-        if (const Outline element = element_outline(lens, i, drawing.section); !element.empty())
+        if (const camera::Outline element = camera::element_outline(lens, i, drawing.section);
+            !element.empty())
             out += path_element("class=\"glass\"", element, true);
     for (const SvgRay& ray : drawing.rays)
         out += path_element(fmt::format("class=\"ray\" style=\"stroke:{}\"", ray.colour), ray.path);
     for (int i = 0; i < lens.size(); ++i)
         if (i != lens.stop())
             out += path_element(fmt::format("id=\"face{}\" class=\"face\"", i),
-                                surface_outline(lens, i, drawing.section));
+                                camera::surface_outline(lens, i, drawing.section));
     out += stop_paths(lens);
     out += path_element("id=\"film\" class=\"film\"", {{drawing.film_mm, -drawing.film_radius_mm},
                                                        {drawing.film_mm, drawing.film_radius_mm}});
@@ -109,10 +110,10 @@ void check_drawing(const std::filesystem::path& path) {
     check_writable(path);
 }
 
-void write_drawing(const std::filesystem::path& path, const Lens& lens,
+void write_drawing(const std::filesystem::path& path, const camera::Lens& lens,
                    const LensDrawing& drawing) {
     check_drawing(path);
     write_file_atomically(path, lens_svg(lens, drawing));
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -15,7 +15,7 @@
 #include "io/file/text_lines.h"
 #include "io/lens/lens_formats.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -53,15 +53,16 @@ LensFile read(const fs::path& path, LensGlasses& glasses) {
 }
 
 // Checks the bounds that all formats share.
-void check_size(const Prescription& lens, const std::string& file) {
+void check_size(const camera::Prescription& lens, const std::string& file) {
     std::vector<Glass> different;
-    for (const LensSurface& surface : lens.surfaces)
+    for (const camera::LensSurface& surface : lens.surfaces)
         if (surface.glass &&
             std::find(different.begin(), different.end(), *surface.glass) == different.end())
             different.push_back(*surface.glass);
-    if (lens.surfaces.size() > kMaxSurfaces || different.size() > size_t(kMaxMedia) - 1)
+    if (lens.surfaces.size() > kMaxSurfaces || different.size() > size_t(camera::kMaxMedia) - 1)
         throw InputError(file, "", "has {} surfaces and {} glasses; a lens may have {} and {}",
-                         lens.surfaces.size(), different.size(), kMaxSurfaces, kMaxMedia - 1);
+                         lens.surfaces.size(), different.size(), kMaxSurfaces,
+                         camera::kMaxMedia - 1);
 }
 
 }  // namespace
@@ -94,7 +95,7 @@ std::vector<LensSummary> list_lenses() {
     return lenses;
 }
 
-std::optional<std::string> fault_of(const LensSurface& surface) {
+std::optional<std::string> fault_of(const camera::LensSurface& surface) {
     if (!(std::abs(surface.curvature_1_mm) * kMinLength_mm <= 1))
         return "has a radius that is too small; give it in mm";
     if (!(std::abs(surface.conic) <= kMaxConic)) return "has a conic constant that is too large";
@@ -109,4 +110,4 @@ std::optional<std::string> fault_of(const LensSurface& surface) {
     return std::nullopt;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

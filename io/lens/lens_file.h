@@ -11,10 +11,10 @@
 #include "camera/lens/prescription.h"
 #include "io/glass/agf.h"
 
-namespace petzval {
+namespace petzval::io {
 
 struct LensFile {
-    Prescription lens;                  ///< image_circle_mm is 0 where the file does not say
+    camera::Prescription lens;          ///< image_circle_mm is 0 where the file does not say
     std::vector<std::string> warnings;  ///< one line each: what the file does not say as needed
 };
 
@@ -46,4 +46,4 @@ struct LensSummary {
 /// The lenses that ship, by name. Throws InputError where the program is not whole.
 [[nodiscard]] std::vector<LensSummary> list_lenses();
 
-}  // namespace petzval
+}  // namespace petzval::io

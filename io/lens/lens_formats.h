@@ -11,7 +11,7 @@
 #include "io/glass/glass_lookup.h"
 #include "io/lens/lens_file.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Largest numbers of a lens file, so that nothing overflows: a larger radius should be a plane,
 /// and no lens is wider.
@@ -33,7 +33,7 @@ void allow_keys(const JsonCursor&, std::initializer_list<const char*> keys, cons
                                      const std::string& name, LensGlasses&);
 
 /// Fault in the lengths of a surface, a text that begins with "has"; nothing where all is well.
-[[nodiscard]] std::optional<std::string> fault_of(const LensSurface&);
+[[nodiscard]] std::optional<std::string> fault_of(const camera::LensSurface&);
 
 /// Warning of a stop for which add_stop() is true.
 inline constexpr const char* kShapedStop =
@@ -41,12 +41,12 @@ inline constexpr const char* kShapedStop =
 /// Adds the stop behind other surfaces. One that is shaped, or where the glass changes, becomes
 /// that surface and a plane through its vertex, as wide as it is and on its side in air, if it has
 /// one. Returns whether it is shaped, so that the plane is an approximation.
-bool add_stop(std::vector<LensSurface>&, LensSurface stop);
+bool add_stop(std::vector<camera::LensSurface>&, camera::LensSurface stop);
 /// Number of the surface whose edge limits the light of a distant point on the axis: its aperture
 /// stop (Welford 1986, Aberrations of Optical Systems, ch. 3), by paraxial rays of line d.
-[[nodiscard]] size_t limiting_surface(const std::vector<LensSurface>&);
+[[nodiscard]] size_t limiting_surface(const std::vector<camera::LensSurface>&);
 
 /// Summary of a lens in our JSON, without its surfaces.
 [[nodiscard]] LensSummary read_lens_summary(std::string_view text, const std::string& file);
 
-}  // namespace petzval
+}  // namespace petzval::io

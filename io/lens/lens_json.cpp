@@ -13,7 +13,7 @@
 #include "io/lens/coat_file.h"
 #include "io/lens/lens_formats.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr Range kLength{kMinLength_mm, kMaxRadius_mm}, kFnumber{0.1, 1000}, kField{1e-3, 180};
@@ -62,30 +62,30 @@ std::vector<std::array<double, 2>> read_asphere(const JsonCursor& surface) {
     if (!at) return terms;
     for (const auto& item : at->value().items()) {
         const auto power = finite_number(item.key());
-        if (!power || *power < 2 || *power > kMaxAspherePower ||
+        if (!power || *power < 2 || *power > camera::kMaxAspherePower ||
             item.key() != std::to_string(int(*power)))
             at->fail(item.key(), "is not a power of r; write a whole number from 2 to {}",
-                     kMaxAspherePower);
+                     camera::kMaxAspherePower);
         terms.push_back({*power, at->number(item.key().c_str())});
     }
     std::sort(terms.begin(), terms.end());
     return terms;
 }
 
-SurfaceCoat read_surface_coat(const JsonCursor& surface) {
-    if (!surface.has("coating")) return Coating::Uncoated;
+camera::SurfaceCoat read_surface_coat(const JsonCursor& surface) {
+    if (!surface.has("coating")) return camera::Coating::Uncoated;
     if (surface.value().at("coating").is_object()) return read_layers(surface.object("coating"));
     const auto coating = coating_named(surface.text("coating"));
-    if (!coating || *coating >= Coating::Filed)
+    if (!coating || *coating >= camera::Coating::Filed)
         surface.fail("coating", "must be layers, or one of {}, but neither filed nor year",
                      coating_names());
     return *coating;
 }
 
-LensSurface read_surface(const JsonCursor& at, LensGlasses& glasses) {
+camera::LensSurface read_surface(const JsonCursor& at, LensGlasses& glasses) {
     allow(at, {"radius", "thickness", "medium", "semi_diameter", "conic", "asphere", "cylinder",
                "coating", "stop"});
-    LensSurface surface;
+    camera::LensSurface surface;
     at.require("radius");
     if (!at.value().at("radius").is_null()) {
         const double radius_mm = at.number("radius", {-kMaxRadius_mm, kMaxRadius_mm});
@@ -99,7 +99,7 @@ LensSurface read_surface(const JsonCursor& at, LensGlasses& glasses) {
         const std::string axis = at.text("cylinder");
         if (axis != "x" && axis != "y")
             at.fail("cylinder", "must be \"x\" or \"y\": the axis along which it is straight");
-        surface.profile = axis == "x" ? Profile::CylinderX : Profile::CylinderY;
+        surface.profile = axis == "x" ? camera::Profile::CylinderX : camera::Profile::CylinderY;
     }
     surface.thickness_mm = at.number("thickness", {-kMaxThickness_mm, kMaxThickness_mm});
     surface.semi_diameter_mm = at.number("semi_diameter", {kMinLength_mm, kMaxSemiDiameter_mm});
@@ -110,13 +110,13 @@ LensSurface read_surface(const JsonCursor& at, LensGlasses& glasses) {
     return surface;
 }
 
-std::vector<LensSurface> read_surfaces(const JsonCursor& lens, LensGlasses& glasses) {
+std::vector<camera::LensSurface> read_surfaces(const JsonCursor& lens, LensGlasses& glasses) {
     lens.require("surfaces");
     const std::vector<JsonCursor> items = lens.objects("surfaces");
     if (items.empty() || items.size() > kMaxSurfaces)
         lens.fail("surfaces", "must hold 1 to {} surfaces, but holds {}", kMaxSurfaces,
                   items.size());
-    std::vector<LensSurface> surfaces;
+    std::vector<camera::LensSurface> surfaces;
     const JsonCursor* stop = nullptr;
     for (const JsonCursor& at : items) {
         const auto before = surfaces.empty() ? std::nullopt : surfaces.back().glass;
@@ -133,9 +133,9 @@ std::vector<LensSurface> read_surfaces(const JsonCursor& lens, LensGlasses& glas
 // Makes a plane of the stop, and finds it where the file names none. Surfaces behind it may count
 // one more than in the file, which the focusing group follows.
 void place_stop(const std::string& file, LensFile& out) {
-    Prescription& lens = out.lens;
-    const auto is_stop = [](const LensSurface& s) { return s.stop; };
-    std::vector<LensSurface> filed = std::exchange(lens.surfaces, {});
+    camera::Prescription& lens = out.lens;
+    const auto is_stop = [](const camera::LensSurface& s) { return s.stop; };
+    std::vector<camera::LensSurface> filed = std::exchange(lens.surfaces, {});
     const auto named = std::find_if(filed.begin(), filed.end(), is_stop);
     auto number = static_cast<size_t>(named - filed.begin());
     if (named == filed.end()) {
@@ -146,7 +146,7 @@ void place_stop(const std::string& file, LensFile& out) {
                         "from 0, whose edge limits the light of a distant point on the axis",
                         file, number));
     }
-    for (LensSurface& surface : filed) {
+    for (camera::LensSurface& surface : filed) {
         if (!surface.stop)
             lens.surfaces.push_back(std::move(surface));
         else if (add_stop(lens.surfaces, std::move(surface)))
@@ -186,7 +186,7 @@ LensFile read_lens_json(std::string_view text, const std::string& file, const st
     at.require("surfaces");  // before anything of what may be no lens is shown
     allow(at, {"name", "title", "year", "patent", "source", "grade", "notes", "focal_length",
                "fnumber", "field_half_angle_deg", "image_circle", "focus_group", "surfaces"});
-    Prescription lens;
+    camera::Prescription lens;
     lens.name = shown(at, "name", name);
     lens.title = shown(at, "title");
     lens.source = source_of(at);
@@ -217,4 +217,4 @@ LensSummary read_lens_summary(std::string_view text, const std::string& file) {
             static_cast<int>(at.integer_or("year", 0))};
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

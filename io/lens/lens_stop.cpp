@@ -7,17 +7,17 @@
 #include "camera/lens/paraxial.h"
 #include "io/lens/lens_formats.h"
 
-namespace petzval {
+namespace petzval::io {
 
-bool add_stop(std::vector<LensSurface>& surfaces, LensSurface surface) {
+bool add_stop(std::vector<camera::LensSurface>& surfaces, camera::LensSurface surface) {
     const auto before = surfaces.empty() ? std::nullopt : surfaces.back().glass;
     const bool shaped = surface.curvature_1_mm != 0 || !surface.asphere.empty();
     if (!shaped && surface.glass == before) {
-        surface.profile = Profile::Rotational;
+        surface.profile = camera::Profile::Rotational;
         surfaces.push_back(std::move(surface));
         return false;
     }
-    LensSurface plane;
+    camera::LensSurface plane;
     plane.stop = true;
     plane.semi_diameter_mm = surface.semi_diameter_mm;
     surface.stop = false;
@@ -33,11 +33,11 @@ bool add_stop(std::vector<LensSurface>& surfaces, LensSurface surface) {
     return shaped;
 }
 
-size_t limiting_surface(const std::vector<LensSurface>& surfaces) {
+size_t limiting_surface(const std::vector<camera::LensSurface>& surfaces) {
     size_t found = 0;
     double narrowest = std::numeric_limits<double>::infinity();
-    for (const Section section : {Section::Y, Section::X}) {
-        const std::vector<double> heights = marginal_heights_mm(surfaces, section);
+    for (const camera::Section section : {camera::Section::Y, camera::Section::X}) {
+        const std::vector<double> heights = camera::marginal_heights_mm(surfaces, section);
         for (size_t i = 0; i < surfaces.size(); ++i) {
             const double beam = surfaces[i].semi_diameter_mm / std::fabs(heights[i]);
             if (!(beam < narrowest)) continue;
@@ -48,4 +48,4 @@ size_t limiting_surface(const std::vector<LensSurface>& surfaces) {
     return found;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -16,7 +16,7 @@
 #include "io/glass/catalogue.h"
 #include "io/lens/lens_formats.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -36,7 +36,7 @@ constexpr std::array kHarmless{"COMM", "COAT", "HIDE", "MIRR", "SLAB", "POPS", "
 
 struct Surface {
     TextLine at;
-    LensSurface lens;  ///< in the file's unit
+    camera::LensSurface lens;  ///< in the file's unit
     std::string type = "STANDARD";
     std::vector<std::pair<TextLine, Words>> parameters;
     Words glass;
@@ -264,7 +264,7 @@ void Reader::add(const Surface& from) {
     Surface at = from;
     if (at.infinite) fail(at.at, "is at an infinite distance from the next surface");
     add_asphere(at);
-    LensSurface& surface = at.lens;
+    camera::LensSurface& surface = at.lens;
     surface.curvature_1_mm /= unit_mm_;
     surface.thickness_mm *= unit_mm_;
     if (!at.glass.empty()) surface.glass = find_glass(at);
@@ -316,4 +316,4 @@ LensFile read_lens_zmx(std::string_view text, const std::string& file, const std
     return Reader(file, name, glasses).read(text);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

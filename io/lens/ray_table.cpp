@@ -9,7 +9,7 @@
 #include "io/base/error.h"
 #include "io/file/csv.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr std::array<const char*, 7> kColumns{"x", "y", "z", "dx", "dy", "dz", "nm"};
@@ -56,15 +56,16 @@ std::vector<RayToTrace> read_rays(const std::filesystem::path& path) {
     return rays;
 }
 
-std::string ray_table(std::span<const TracedRay> rays, Towards towards, double film_mm) {
+std::string ray_table(std::span<const camera::TracedRay> rays, camera::Towards towards,
+                      double film_mm) {
     std::string out = "x,y,z,dx,dy,dz,film_x,film_y,path,status,surface\n";
-    for (const TracedRay& ray : rays) {
-        if (ray.status != RayStatus::Passed) {
+    for (const camera::TracedRay& ray : rays) {
+        if (ray.status != camera::RayStatus::Passed) {
             out += fmt::format(",,,,,,,,,{},{}\n", kStatuses[static_cast<size_t>(ray.status)],
                                ray.end_surface);
             continue;
         }
-        const auto film = towards == Towards::Film ? ray.at_plane(film_mm) : std::nullopt;
+        const auto film = towards == camera::Towards::Film ? ray.at_plane(film_mm) : std::nullopt;
         out += fmt::format("{},{},{},{},{},{},{},{},ok,\n", ray.point.x, ray.point.y, ray.point.z,
                            ray.direction.x, ray.direction.y, ray.direction.z,
                            film ? fmt::format("{},{}", (*film)[0], (*film)[1]) : ",", ray.path_mm);
@@ -72,4 +73,4 @@ std::string ray_table(std::span<const TracedRay> rays, Towards towards, double f
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

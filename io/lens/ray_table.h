@@ -9,7 +9,7 @@
 
 #include "camera/lens/traced_ray.h"
 
-namespace petzval {
+namespace petzval::io {
 
 struct RayToTrace {
     V3d origin_mm;  ///< z = 0 at the first vertex, +z towards the film
@@ -25,6 +25,7 @@ struct RayToTrace {
 /// it meets the film; path: its optical path from the origin to x,y,z; status: ok, vignetted, tir
 /// or miss; surface: where it was blocked, from 0. Cells without a value are empty. Digits as many
 /// as a double needs.
-[[nodiscard]] std::string ray_table(std::span<const TracedRay>, Towards, double film_mm);
+[[nodiscard]] std::string ray_table(std::span<const camera::TracedRay>, camera::Towards,
+                                    double film_mm);
 
-}  // namespace petzval
+}  // namespace petzval::io

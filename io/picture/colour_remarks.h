@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 struct ColourRemarks {
     bool inks = false;  ///< its texels were made of CMYK, by the simplest formula
@@ -13,4 +13,4 @@ struct ColourRemarks {
     std::string other_space;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

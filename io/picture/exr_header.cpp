@@ -11,7 +11,7 @@
 
 #include "io/file/read_file.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr uint32_t kMultiPart = 0x1000;
@@ -70,4 +70,4 @@ std::string exr_header_complaint(const std::filesystem::path& path) {
     return HeaderCheck(path).complaint();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

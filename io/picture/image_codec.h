@@ -13,7 +13,7 @@
 #include "io/picture/picture.h"
 #include "io/picture/picture_budget.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Functions of the module: those of the same names in io/image/picture_files.h.
 struct ImageCodec {
@@ -32,4 +32,4 @@ struct ImageCodec {
 /// Name of the module's one symbol, a function without arguments that returns an ImageCodec.
 inline constexpr const char* kImageCodecSymbol = "petzval_image_codec";
 
-}  // namespace petzval
+}  // namespace petzval::io

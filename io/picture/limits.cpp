@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr int kMaxSide = 32768;
@@ -51,4 +51,4 @@ std::string size_complaint(int width, int height, int depth, int channels, uint6
     return "";
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

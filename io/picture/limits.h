@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Reason why a file of byte_count bytes cannot hold such a picture; empty where it can.
 [[nodiscard]] std::string size_complaint(int width, int height, int depth, int channels,
@@ -19,4 +19,4 @@ namespace petzval {
 /// RFC 6386, section 9.1.
 [[nodiscard]] std::optional<std::array<int, 2>> webp_size(std::span<const uint8_t> file);
 
-}  // namespace petzval
+}  // namespace petzval::io

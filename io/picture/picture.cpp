@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace petzval {
+namespace petzval::io {
 
 PictureRows::PictureRows(const Picture& picture) : layout(picture) {
     const size_t row_size = size_t(picture.width) * picture.channels.size();
@@ -20,4 +20,4 @@ int channel_index(const PictureLayout& picture, std::string_view name) {
     return found == picture.channels.end() ? -1 : int(found - picture.channels.begin());
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Metadata of a picture, name by name.
 using Metadata = std::vector<std::pair<std::string, std::variant<int, float, std::string>>>;
@@ -47,4 +47,4 @@ struct PictureRows {
 /// Index of the channel of that name among a picture's channels; -1 where there is none.
 [[nodiscard]] int channel_index(const PictureLayout&, std::string_view name);
 
-}  // namespace petzval
+}  // namespace petzval::io

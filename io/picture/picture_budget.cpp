@@ -5,7 +5,7 @@
 
 #include "io/base/machine.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 std::string mebibytes(uint64_t bytes) {
@@ -28,4 +28,4 @@ std::string PictureBudget::take(uint64_t kept_bytes, uint64_t meanwhile_bytes) {
         mebibytes(needed_bytes), mebibytes(limit_bytes_), mebibytes(taken_bytes_));
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

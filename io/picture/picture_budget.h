@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Budget that the pictures of a scene share. It is asked when a picture's header is known and
 /// nothing is decoded yet.
@@ -25,4 +25,4 @@ class PictureBudget {
     uint64_t limit_bytes_, taken_bytes_ = 0;  ///< limit >= taken
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

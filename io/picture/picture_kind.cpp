@@ -4,7 +4,7 @@
 #include "io/base/ascii.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::io {
 
 std::string_view picture_kind(std::string_view head) {
     using namespace std::string_view_literals;
@@ -25,4 +25,4 @@ PictureFormat picture_format(const std::filesystem::path& path) {
                         "a picture's name must end in .exr, .png, .jpg or .jpeg");
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Ending of the format that the first bytes of a file announce: "exr", "hdr", "png", "jpg" or
 /// "webp"; empty for any other. These are the formats that are decoded: OpenImageIO has readers for
@@ -23,4 +23,4 @@ enum class PictureFormat : uint8_t { Exr, Png, Jpeg };
 /// other.
 [[nodiscard]] PictureFormat picture_format(const std::filesystem::path&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -11,7 +11,7 @@
 #include "io/file/read_file.h"
 #include "io/picture/picture_kind.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -105,4 +105,4 @@ bool is_whole_png(std::span<const uint8_t> bytes, bool with_sums) {
     return false;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "io/file/atomic_file.h"
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Name and unfilled value of the metadata that seal() fills in. PNG needs none: its chunks have
 /// sums.
@@ -34,4 +34,4 @@ void seal(AtomicFile&);
 /// Whether a PNG's chunks fit into it and end with IEND; with_sums: and have their sums.
 [[nodiscard]] bool is_whole_png(std::span<const uint8_t>, bool with_sums);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -19,7 +19,7 @@
 #include "io/base/printable.h"
 #include "io/file/atomic_file.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -233,4 +233,4 @@ void write_plot(const fs::path& path, const Plot& plot) {
     write_file_atomically(path, run_gnuplot(path, script(terminal(path), plot)));
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 enum class PlotStyle : uint8_t {
     Lines,
@@ -48,4 +48,4 @@ void check_plot(const std::filesystem::path&);
 /// written, gnuplot is not there, or it fails, as with series that hold nothing finite.
 void write_plot(const std::filesystem::path&, const Plot&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -18,7 +18,7 @@
 #include "io/file/assets.h"
 #include "io/file/csv.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -272,4 +272,4 @@ std::vector<std::string> reflectance_names() {
     return names;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -15,7 +15,7 @@
 #include "core/spectrum/metal.h"
 #include "core/spectrum/spectrum_table.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Colour matching functions of CIE 1931, 2 degrees: xbar, ybar, zbar.
 [[nodiscard]] std::array<SpectrumTable, 3> standard_observer();
@@ -55,4 +55,4 @@ namespace petzval {
 /// Names of the reflectances that ship.
 [[nodiscard]] std::vector<std::string> reflectance_names();
 
-}  // namespace petzval
+}  // namespace petzval::io

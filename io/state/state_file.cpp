@@ -11,7 +11,7 @@
 
 #include "io/file/atomic_file.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -211,4 +211,4 @@ void StateReader::add_to(Film& film, const Rect& some) const {
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -16,7 +16,7 @@
 #include "io/base/error.h"
 #include "io/file/read_file.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Part of a frame that a film keeps, and what it keeps of each pixel.
 struct FilmShape {
@@ -82,4 +82,4 @@ class StateReader {
     uint64_t hash_ = 0;       ///< of what is before it
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

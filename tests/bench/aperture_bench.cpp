@@ -13,8 +13,8 @@ namespace {
 
 constexpr size_t kArguments = 1 << 14;
 
-Mask vignette(int size) {
-    Mask mask{size, size, {}};
+camera::Mask vignette(int size) {
+    camera::Mask mask{size, size, {}};
     for (int i = 0; i < size * size; ++i) {
         const float x = 2.f * (i % size + 0.5f) / size - 1, y = 2.f * (i / size + 0.5f) / size - 1;
         mask.texels.push_back(std::max(0.f, 1 - x * x - y * y));
@@ -23,10 +23,11 @@ Mask vignette(int size) {
 }
 
 // Wavy rim of 5000 vertices around 8 holes: what a detailed SVG comes to.
-Polygon gear() {
-    Polygon out{{{}}};
+camera::Polygon gear() {
+    camera::Polygon out{{{}}};
     const auto at = [](double r, double turn) {
-        return V2d(std::cos(2 * std::numbers::pi * turn), std::sin(2 * std::numbers::pi * turn)) *
+        return camera::V2d(std::cos(2 * std::numbers::pi * turn),
+                           std::sin(2 * std::numbers::pi * turn)) *
                r;
     };
     for (int i = 0; i < 5000; ++i)
@@ -40,22 +41,22 @@ Polygon gear() {
     return out;
 }
 
-std::vector<std::pair<const char*, ApertureShape>> shapes() {
-    return {{"circle", Disk()},
-            {"square", square()},
-            {"triangle", regular_polygon(3)},
-            {"rhomboid", rhomboid()},
-            {"frame", frame()},
-            {"star:5", star(5)},
-            {"polygon:6", regular_polygon(6)},
-            {"polygon:9,0,0.5", regular_polygon(9, 0, 0.5)},
+std::vector<std::pair<const char*, camera::ApertureShape>> shapes() {
+    return {{"circle", camera::Disk()},
+            {"square", camera::square()},
+            {"triangle", camera::regular_polygon(3)},
+            {"rhomboid", camera::rhomboid()},
+            {"frame", camera::frame()},
+            {"star:5", camera::star(5)},
+            {"polygon:6", camera::regular_polygon(6)},
+            {"polygon:9,0,0.5", camera::regular_polygon(9, 0, 0.5)},
             {"gear", gear()},
             {"mask 64", vignette(64)},
             {"mask 1024", vignette(1024)}};
 }
 
-void sample(benchmark::State& state, const ApertureShape& shape, IrisSampling way) {
-    const Iris iris(shape, 10, ApertureScale::EqualArea, way);
+void sample(benchmark::State& state, const camera::ApertureShape& shape, camera::IrisSampling way) {
+    const camera::Iris iris(shape, 10, camera::ApertureScale::EqualArea, way);
     std::vector<V2f> u;
     test::Random random(1);
     for (size_t i = 0; i < kArguments; ++i) u.push_back(random.next2());
@@ -63,8 +64,8 @@ void sample(benchmark::State& state, const ApertureShape& shape, IrisSampling wa
     for (auto _ : state) benchmark::DoNotOptimize(iris.sample(u[i++ % kArguments]));
 }
 
-void transmits(benchmark::State& state, const ApertureShape& shape) {
-    const Iris iris(shape, 10);
+void transmits(benchmark::State& state, const camera::ApertureShape& shape) {
+    const camera::Iris iris(shape, 10);
     std::vector<V2f> points;
     test::Random random(2);
     for (size_t i = 0; i < kArguments; ++i)
@@ -73,14 +74,14 @@ void transmits(benchmark::State& state, const ApertureShape& shape) {
     for (auto _ : state) benchmark::DoNotOptimize(iris.transmits(points[i++ % kArguments]));
 }
 
-void make(benchmark::State& state, const ApertureShape& shape) {
-    for (auto _ : state) benchmark::DoNotOptimize(Iris(shape, 10));
+void make(benchmark::State& state, const camera::ApertureShape& shape) {
+    for (auto _ : state) benchmark::DoNotOptimize(camera::Iris(shape, 10));
 }
 
 const bool registered = [] {
     constexpr const char* names[] = {"formula", "triangles", "rejection"};
     for (const auto& [name, shape] : shapes()) {
-        for (const IrisSampling way : iris_samplings(shape))
+        for (const camera::IrisSampling way : camera::iris_samplings(shape))
             benchmark::RegisterBenchmark(
                 (std::string("sample/") + names[static_cast<int>(way)] + "/" + name).c_str(),
                 [shape = shape, way](benchmark::State& s) { sample(s, shape, way); });

@@ -20,19 +20,20 @@ namespace {
 
 constexpr double kFiled = 0;  ///< f-number: the stop as it is
 
-LensCameraInput input_of(const std::string& name, double fnumber) {
-    auto lens = std::make_shared<const Lens>(load_lens(name).lens);
-    const FirstOrder first = first_order(*lens, kLineD_nm);
+camera::LensCameraInput input_of(const std::string& name, double fnumber) {
+    auto lens = std::make_shared<const camera::Lens>(io::load_lens(name).lens);
+    const camera::FirstOrder first = camera::first_order(*lens, kLineD_nm);
     const double filed = lens->prescription().surfaces[size_t(lens->stop())].semi_diameter_mm;
     const double scale = fnumber > 0 ? first.fnumber / fnumber : 1;
-    LensCameraInput in{
-        .lens = lens, .iris = Iris(Disk{}, filed * std::min(scale, 1.)), .to_world = M44f()};
+    camera::LensCameraInput in{.lens = lens,
+                               .iris = camera::Iris(camera::Disk{}, filed * std::min(scale, 1.)),
+                               .to_world = M44f()};
     in.film_mm = lens->film_mm();
     // The largest 3 : 2 frame in the image circle.
     in.film_width_mm = lens->prescription().image_circle_mm * 0.83;
     in.film_height_mm = in.film_width_mm * 2 / 3;
     in.entrance_pupil_mm = first.entrance_pupil_mm;
-    in.dispersion = DispersionMode::Hero;
+    in.dispersion = camera::DispersionMode::Hero;
     return in;
 }
 
@@ -45,15 +46,15 @@ Bands four_wavelengths(float shift) {
 }
 
 /// What a render does: samples of `together` film points at once. Time is of one sample.
-void sample(benchmark::State& state, const char* name, double fnumber, DispersionMode mode,
+void sample(benchmark::State& state, const char* name, double fnumber, camera::DispersionMode mode,
             size_t together) {
-    LensCameraInput in = input_of(name, fnumber);
+    camera::LensCameraInput in = input_of(name, fnumber);
     in.dispersion = mode;
-    const LensCamera camera(in);
+    const camera::LensCamera camera(in);
     const Filter filter(FilterKind::BlackmanHarris, 1.5f);
     test::Random random(1);
     constexpr size_t kSamples = 4096;
-    std::vector<FilmPoint> points(kSamples);
+    std::vector<camera::FilmPoint> points(kSamples);
     std::vector<Bands> bands(kSamples);
     for (uint32_t i = 0; i < kSamples; ++i) {
         const V2f offset = filter.sample(random.next2());
@@ -63,7 +64,7 @@ void sample(benchmark::State& state, const char* name, double fnumber, Dispersio
         bands[i] = four_wavelengths(random.next());
         bands[i].hero = int(random.next() * 4);
     }
-    std::array<CameraSample, kMostFilmPoints> out;
+    std::array<camera::CameraSample, camera::kMostFilmPoints> out;
     size_t at = 0, passed = 0, all = 0;
     for (auto _ : state) {
         camera.sample_all({&points[at], together}, {&bands[at], together}, {out.data(), together});
@@ -76,24 +77,24 @@ void sample(benchmark::State& state, const char* name, double fnumber, Dispersio
 }
 
 void set_up(benchmark::State& state, const std::string& name) {
-    const LensCameraInput in = input_of(name, kFiled);
-    for (auto _ : state) benchmark::DoNotOptimize(LensCamera(in));
+    const camera::LensCameraInput in = input_of(name, kFiled);
+    for (auto _ : state) benchmark::DoNotOptimize(camera::LensCamera(in));
 }
 
 const bool registered = [] {
     for (const char* name : {"takumar-50mm-f1.2", "double-gauss-100mm-f2", "canon-14mm-f2.8-asph",
                              "schneider-anamorphic-31mm", "minolta-fisheye-16mm-f2.8"})
         for (const double fnumber : {kFiled, 4.})
-            for (const auto& [mode, label] : {std::pair{DispersionMode::Shared, "/shared"},
-                                              {DispersionMode::Hero, "/hero"},
-                                              {DispersionMode::Split, "/split"}})
-                for (const size_t together : {size_t{1}, kMostFilmPoints})
+            for (const auto& [mode, label] : {std::pair{camera::DispersionMode::Shared, "/shared"},
+                                              {camera::DispersionMode::Hero, "/hero"},
+                                              {camera::DispersionMode::Split, "/split"}})
+                for (const size_t together : {size_t{1}, camera::kMostFilmPoints})
                     benchmark::RegisterBenchmark(
                         (std::string("sample/") + name + (fnumber > 0 ? "/f4" : "/filed") + label +
                          "/" + std::to_string(together))
                             .c_str(),
                         sample, name, fnumber, mode, together);
-    for (const LensSummary& lens : list_lenses())
+    for (const io::LensSummary& lens : io::list_lenses())
         benchmark::RegisterBenchmark(("set_up/" + lens.name).c_str(), set_up, lens.name)
             ->Unit(benchmark::kMillisecond);
     return true;

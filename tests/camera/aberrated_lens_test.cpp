@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -272,4 +272,4 @@ TEST(AberratedLens, RaysAreAlwaysNumbers) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "camera/iris/iris.h"
 #include "tests/support/complaint.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::complaint;
@@ -102,4 +102,4 @@ TEST(PolygonFault, OfMasks) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -14,7 +14,7 @@
 #include "camera/lens/traced_ray.h"
 #include "tests/support/lens_json.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::kOracleLenses;
@@ -269,4 +269,4 @@ TEST(LensAnalysis, SaysWhereNoRayGetsThrough) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

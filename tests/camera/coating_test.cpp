@@ -9,7 +9,7 @@
 
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr float kRound = 2e-6f;
@@ -146,4 +146,4 @@ TEST(Coating, CementedSurfacesStayBare) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

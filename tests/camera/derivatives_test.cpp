@@ -10,7 +10,7 @@
 #include "tests/support/lens_rays.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::kLensKinds;
@@ -109,4 +109,4 @@ TEST(Dual, JacobiansKeepEtendue) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

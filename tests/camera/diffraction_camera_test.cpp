@@ -11,7 +11,7 @@
 #include "core/sampling/warp.h"
 #include "tests/support/lens_cameras.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::input_of;
@@ -254,4 +254,4 @@ TEST(DiffractionCamera, StarsHaveTheirLightWithDrawsTowardsLampsAndLoseTheirNois
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -13,7 +13,7 @@
 #include "core/sampling/sampler.h"
 #include "core/sampling/warp.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kTau = 2 * std::numbers::pi;
@@ -201,4 +201,4 @@ TEST(Diffraction, StarDrawsFollowTheirDensity) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

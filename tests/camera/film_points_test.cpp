@@ -10,7 +10,7 @@
 #include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using namespace test;
@@ -153,4 +153,4 @@ TEST(FilmPoints, HeroRaysAgreeWithDoubles) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -6,7 +6,7 @@
 
 #include "tests/measure/ghost_light.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 /// Height and angle, in the medium, of a ray near the axis.
@@ -167,4 +167,4 @@ TEST(GhostShapes, ThroughAStarAreStarsAsLargeAsParaxialOpticsSays) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -10,7 +10,7 @@
 #include "camera/ghosts/ghost_search.h"
 #include "tests/measure/ghost_light.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::ghostly, test::hits, test::sun_at;
@@ -197,4 +197,4 @@ TEST(Ghosts, AreNotThereWhereNothingReflects) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -12,7 +12,7 @@
 #include "tests/support/observers.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::least_p;
@@ -202,4 +202,4 @@ TEST(Hero, WithoutAFilterLanesAreSplit) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -11,7 +11,7 @@
 #include "tests/support/clip.h"
 #include "tests/support/complaint.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using enum IrisSampling;
@@ -423,4 +423,4 @@ TEST(Iris, RefusesWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

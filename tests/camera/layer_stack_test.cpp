@@ -11,7 +11,7 @@
 #include "tests/support/lens_json.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -215,4 +215,4 @@ TEST(CoatTables, AreThatNearForLayersOfAnyThickness) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -8,7 +8,7 @@
 #include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using namespace test;
@@ -158,4 +158,4 @@ TEST(LensLosses, TotalReflectionAndMissesAreToldApart) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

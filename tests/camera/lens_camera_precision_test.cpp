@@ -9,7 +9,7 @@
 #include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using namespace test;
@@ -172,4 +172,4 @@ TEST(LensCameraCoating, OffTheAxisEachSurfaceHasItsAngle) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

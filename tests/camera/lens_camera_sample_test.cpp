@@ -8,7 +8,7 @@
 #include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using namespace test;
@@ -109,4 +109,4 @@ TEST(LensCameraSample, ExposureIsInTheWeight) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -16,7 +16,7 @@
 #include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::four_wavelengths;
@@ -392,4 +392,4 @@ TEST(RayAimer, RaysMeetTheStopWhereTheyShould) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

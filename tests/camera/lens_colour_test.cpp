@@ -7,7 +7,7 @@
 
 #include "camera/lens/traced_ray.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Schott's catalogue of 2023.
@@ -110,4 +110,4 @@ TEST(LensColour, AnAchromatCrossesTwice) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -10,7 +10,7 @@
 #include "camera/lens/traced_ray.h"
 #include "tests/support/lens_json.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 Lens shipped(const char* name) {
@@ -220,4 +220,4 @@ TEST(LensFocus, TheFrontFocusIsTooNear) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

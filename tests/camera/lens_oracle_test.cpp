@@ -12,7 +12,7 @@
 #include "tests/support/lens_json.h"
 #include "tests/support/lens_rays.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::at_lane;
@@ -167,4 +167,4 @@ TEST_P(OracleRays, RaysInFloats) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

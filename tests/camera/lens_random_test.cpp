@@ -8,7 +8,7 @@
 #include "camera/lens/trace.h"
 #include "tests/support/random_lens.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::at_lane;
@@ -164,4 +164,4 @@ TEST(RandomLens, SlopesWhoseSquaresAreInfiniteMiss) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -11,7 +11,7 @@
 #include "camera/lens/traced_ray.h"
 #include "tests/support/lens_json.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kFactor = 0.37;
@@ -137,4 +137,4 @@ TEST(LensScaleFactor, MustBeAboveZero) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

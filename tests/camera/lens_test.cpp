@@ -10,7 +10,7 @@
 
 #include "tests/support/lens_rays.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::lens_of;
@@ -70,4 +70,4 @@ TEST(Lens, RefusesWhatIsNoLens) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -12,7 +12,7 @@
 #include "tests/support/lens_rays.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::at_lane;
@@ -344,4 +344,4 @@ TEST(LensTrace, AnObserverSeesPointsIndicesAndDistances) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

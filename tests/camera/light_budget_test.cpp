@@ -9,7 +9,7 @@
 #include "camera/bench/light_walk.h"
 #include "tests/support/lens_json.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 Glass glass_of(double n, double absorption_per_mm = 0) {
@@ -149,4 +149,4 @@ TEST(LightBudget, OfALensOfOneSurfaceAndOfOneThatIsDarkIsSane) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -12,7 +12,7 @@
 #include "camera/models/thin_lens.h"
 #include "camera/models/thin_lens_optics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kThinFocal_mm = 50, kThinFocus_m = 1;
@@ -149,4 +149,4 @@ TEST(NaturalVignetting, HasTheSameMeanInEachWayToCarryWavelengths) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

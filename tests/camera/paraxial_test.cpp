@@ -9,7 +9,7 @@
 
 #include "tests/support/lens_json.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::kOracleLenses;
@@ -129,4 +129,4 @@ TEST(Paraxial, CookeTripletIsThatOfAnOpticsProgram) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

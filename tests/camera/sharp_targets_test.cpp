@@ -9,7 +9,7 @@
 #include "tests/support/observers.h"
 #include "tests/support/targets.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::Mean;
@@ -145,4 +145,4 @@ TEST(SharpTargets, NeedAPixel) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

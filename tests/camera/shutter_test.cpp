@@ -5,7 +5,7 @@
 #include "camera/models/thin_lens.h"
 #include "tests/support/chi_square.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::Random;
@@ -248,4 +248,4 @@ TEST(Shutter, TimesBeyondTheExposureMoveTheCameraNoFarther) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -10,7 +10,7 @@
 #include "tests/support/lens_cameras.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::Random;
@@ -163,4 +163,4 @@ TEST(StopDraw, FewDrawsAreVignettedInTheCorner) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -9,7 +9,7 @@
 #include "tests/support/lens_cameras.h"
 #include "tests/support/targets.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::Mean;
@@ -263,4 +263,4 @@ TEST(StopMaps, PointsOfTheDiscAreThoseOfTheStop) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

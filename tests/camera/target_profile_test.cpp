@@ -12,7 +12,7 @@
 #include "tests/support/lens_cameras.h"
 #include "tests/support/targets.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::Mean;
@@ -143,4 +143,4 @@ TEST(TargetProfiles, AreThoseOfALightTracer) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -13,7 +13,7 @@
 #include "tests/support/observers.h"
 #include "tests/support/targets.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::Mean;
@@ -260,4 +260,4 @@ TEST(Targets, SenselessTargetsDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -13,7 +13,7 @@
 #include "camera/models/aberrated_lens.h"
 #include "tests/support/traced_singlets.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 constexpr double kInfinite_m = std::numeric_limits<double>::infinity();
@@ -209,4 +209,4 @@ TEST(ThinLensOptics, RefusesWhatIsNoLens) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -7,7 +7,7 @@
 
 #include "camera/lens/traced_ray.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 // Rays of which some pass and others end at a rim, by total reflection or beside a surface.
@@ -89,4 +89,4 @@ TEST(TraceRays, IsWhatEachRayGivesByItself) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

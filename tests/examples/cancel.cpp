@@ -11,14 +11,14 @@ using namespace petzval;
 
 int main(int count, char** words) try {
     if (count != 3) return std::fputs("cancel SCENE.glb PICTURE.exr\n", stderr), 2;
-    RenderRequest request;
+    apps::RenderRequest request;
     request.scene.scene = words[1];
     request.scene.size = {320, 180};
     request.samples.count = 64;
 
-    RenderSession session(2);
+    apps::RenderSession session(2);
     session.prepare(request, [](const std::string&) {});
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     std::jthread watch([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
         monitor.stop = true;
@@ -28,7 +28,7 @@ int main(int count, char** words) try {
     std::printf("stopped: %d, samples of all pixels: %llu\n", stopped,
                 static_cast<unsigned long long>(session.film().taken_count()));
 
-    RenderMonitor patient;
+    integrator::RenderMonitor patient;
     session.render(patient);
     session.write(words[2]);
     return stopped ? 0 : 1;

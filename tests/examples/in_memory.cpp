@@ -10,18 +10,18 @@ using namespace petzval;
 
 int main(int count, char** words) try {
     if (count != 2) return std::fputs("in_memory SCENE.glb\n", stderr), 2;
-    RenderRequest request;
+    apps::RenderRequest request;
     request.scene.scene = words[1];
     request.scene.size = {96, 64};
     request.scene.camera.lens = "double-gauss-100mm-f2";
     request.samples.count = 16;
 
-    RenderSession session(2);
+    apps::RenderSession session(2);
     session.prepare(request, [](const std::string& line) { std::puts(line.c_str()); });
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     session.render(monitor);
 
-    const PictureRows picture = session.light();
+    const io::PictureRows picture = session.light();
     std::vector<float> row(picture.layout.channels.size() * size_t(picture.layout.width));
     double nits = 0;
     for (int y = 0; y < picture.layout.height; ++y) {

@@ -50,7 +50,7 @@ struct Subject {
     uint32_t seed = 0;
     uint64_t number = 0;
     Kind kind = Kind::Random;
-    Prescription prescription;
+    camera::Prescription prescription;
 };
 
 Subject subject_of(uint32_t seed, uint64_t number, Random& random) {
@@ -93,8 +93,8 @@ bool is_index(double n) {
 }
 
 // An asphere's curvature at its vertex, to the powers that the third order has.
-bool overflows(const Prescription& lens) {
-    for (const LensSurface& surface : lens.surfaces)
+bool overflows(const camera::Prescription& lens) {
+    for (const camera::LensSurface& surface : lens.surfaces)
         for (const auto& [power, a] : surface.asphere)
             if (std::fabs(a) > 1e50) return true;
     return false;
@@ -143,20 +143,22 @@ class Trial {
     }
 
     void trace_all() {
-        for (const auto towards : {Towards::Film, Towards::Scene}) {
-            const Clip clip = by_chance(random_, 0.5f) ? Clip::Yes : Clip::No;
+        for (const auto towards : {camera::Towards::Film, camera::Towards::Scene}) {
+            const camera::Clip clip =
+                by_chance(random_, 0.5f) ? camera::Clip::Yes : camera::Clip::No;
             std::array<test::Line, 4> lines;
-            for (auto& line : lines) line = test::random_line(random_, towards == Towards::Film);
+            for (auto& line : lines)
+                line = test::random_line(random_, towards == camera::Towards::Film);
             const double nm = wavelength_nm();
             auto doubles = test::rays_of<d4>(lines);
             auto floats = test::rays_of<f4>(lines);
             auto dual = test::with_derivatives(floats);
             const auto indices = by_chance(random_, 0.5f) ? lens_.exact_indices(splat(float(nm)))
                                                           : lens_.indices(splat(float(nm)));
-            (void)trace_lens({lens_, towards, test::whole(lens_), clip},
-                             lens_.exact_indices(broadcast<d4>(nm)), doubles);
-            (void)trace_lens({lens_, towards, test::whole(lens_), clip}, indices, floats);
-            (void)trace_lens({lens_, towards, test::whole(lens_), clip}, indices, dual);
+            (void)camera::trace_lens({lens_, towards, test::whole(lens_), clip},
+                                     lens_.exact_indices(camera::broadcast<d4>(nm)), doubles);
+            (void)camera::trace_lens({lens_, towards, test::whole(lens_), clip}, indices, floats);
+            (void)camera::trace_lens({lens_, towards, test::whole(lens_), clip}, indices, dual);
             if (kind_ == Kind::Wild || !has_indices(nm, indices)) continue;
             // Light that grazed a surface comes from so far away that digits are gone.
             defined(doubles, towards, kind_ == Kind::Random ? 1e-9 : 0.01, "doubles");
@@ -165,41 +167,43 @@ class Trial {
             // Derivatives may change a value's last digit, as a quotient is another product there.
             for (int i = 0; i < 4; ++i) {
                 ++tally_.rays;
-                tally_.passed += doubles.status(i) == RayStatus::Passed;
+                tally_.passed += doubles.status(i) == camera::RayStatus::Passed;
                 tally_.differ += dual.status(i) != floats.status(i);
             }
         }
     }
     // Between two nanometres the table may know of a pole what the formula does not.
-    bool has_indices(double nm, const LensIndices<f4>& indices) const {
+    bool has_indices(double nm, const camera::LensIndices<f4>& indices) const {
         for (size_t i = 0; i < lens_.media().size(); ++i)
             if (!is_index(lens_.media()[i].index(nm)) || !is_index(indices.of_medium[i][0]))
                 return false;
         return true;
     }
     template <class N>
-    void defined(const LensRay<N>& ray, Towards towards, double tolerance, const char* numbers) {
+    void defined(const camera::LensRay<N>& ray, camera::Towards towards, double tolerance,
+                 const char* numbers) {
         const std::string fault = test::fault_of(ray, lens_, towards, tolerance);
         if (!fault.empty())
             throw Fault{fmt::format("trace towards the {} in {}: {}",
-                                    towards == Towards::Film ? "film" : "scene", numbers, fault)};
+                                    towards == camera::Towards::Film ? "film" : "scene", numbers,
+                                    fault)};
     }
 
     void first_orders() {
-        for (const auto section : {Section::X, Section::Y}) {
-            const FirstOrder f = first_order(lens_, kLineD_nm, section);
-            const auto image = image_of(lens_, -1000, kLineD_nm, section);
+        for (const auto section : {camera::Section::X, camera::Section::Y}) {
+            const camera::FirstOrder f = camera::first_order(lens_, kLineD_nm, section);
+            const auto image = camera::image_of(lens_, -1000, kLineD_nm, section);
             if (!sound_) continue;
             for (const double a :
                  {f.focal_length_mm, f.back_focus_mm, f.front_focus_mm, f.entrance_pupil_mm,
                   f.exit_pupil_mm, image.from_last_vertex_mm, image.magnification})
                 require(!std::isnan(a), "a first-order length is NaN");
-            if (section == Section::Y) entrance_pupil_mm_ = f.entrance_pupil_mm;
+            if (section == camera::Section::Y) entrance_pupil_mm_ = f.entrance_pupil_mm;
         }
         if (!std::isfinite(entrance_pupil_mm_)) entrance_pupil_mm_ = 0;
         try {
-            const Seidel sums = seidel(lens_, 0.3);
-            const FirstOrder f = first_order(lens_, kLineD_nm);
+            const camera::Seidel sums = camera::seidel(lens_, 0.3);
+            const camera::FirstOrder f = camera::first_order(lens_, kLineD_nm);
             if (sound_ && std::isfinite(f.entrance_pupil_mm) &&
                 std::isfinite(f.entrance_pupil_diameter_mm))
                 for (const double sum : sums.total)
@@ -210,18 +214,18 @@ class Trial {
     }
 
     void trace() {
-        for (const auto towards : {Towards::Film, Towards::Scene}) {
-            const auto line = test::random_line(random_, towards == Towards::Film);
+        for (const auto towards : {camera::Towards::Film, camera::Towards::Scene}) {
+            const auto line = test::random_line(random_, towards == camera::Towards::Film);
             const auto v = [](const test::Three& a) { return V3d(a[0], a[1], a[2]); };
             const double nm = wavelength_nm();
-            const TracedRay ray =
-                trace_ray(lens_, v(line.origin), v(line.direction), nm, towards, Clip::Yes);
+            const camera::TracedRay ray = camera::trace_ray(
+                lens_, v(line.origin), v(line.direction), nm, towards, camera::Clip::Yes);
             require(ray.points.size() <= size_t(lens_.size()), "more points than surfaces");
             if (kind_ == Kind::Wild || !has_indices(nm, lens_.exact_indices(splat(float(nm)))))
                 continue;
             for (const V3d& p : ray.points)
                 require(std::isfinite(p.x + p.y + p.z), "a traced point is not finite");
-            if (ray.status == RayStatus::Passed) {
+            if (ray.status == camera::RayStatus::Passed) {
                 require(ray.points.size() == size_t(lens_.size()), "a passed ray lacks a point");
                 require(std::isfinite(ray.path_mm), "an optical path is not finite");
                 if (const auto film = ray.at_plane(lens_.film_mm()))
@@ -235,22 +239,23 @@ class Trial {
 
     void outlines() {
         for (int i = 0; i < lens_.size(); ++i)
-            for (const auto& point : element_outline(lens_, i, Section::Y))
+            for (const auto& point : camera::element_outline(lens_, i, camera::Section::Y))
                 require(!std::isnan(point[0] + point[1]), "an outline is NaN");
     }
 
     void stops() {
         const double wanted = between(random_, 0.5, 32);
-        if (const auto radius = stop_radius_for(lens_, wanted)) {
+        if (const auto radius = camera::stop_radius_for(lens_, wanted)) {
             require(std::isfinite(*radius) && *radius >= 0, "a stop radius is none");
-            require(fnumber_of(lens_, *radius) > 0, "an f-number is none");
+            require(camera::fnumber_of(lens_, *radius) > 0, "an f-number is none");
         }
     }
 
     void focus() {
         const double object = by_chance(random_, 0.5f) ? -INFINITY : -between(random_, 10, 10000);
-        const FocusBy by = by_chance(random_, 0.1f) ? FocusBy::Traced : FocusBy::Paraxial;
-        const auto sharp = focused(lens_, object, by);
+        const camera::FocusBy by =
+            by_chance(random_, 0.1f) ? camera::FocusBy::Traced : camera::FocusBy::Paraxial;
+        const auto sharp = camera::focused(lens_, object, by);
         tally_.focused += sharp.has_value();
         if (sharp)
             for (const auto& surface : sharp->prescription().surfaces)
@@ -258,37 +263,42 @@ class Trial {
     }
 
     void bundles() {
-        const ObjectPoint object{between(random_, 0, 80),
-                                 by_chance(random_, 0.5f) ? INFINITY : between(random_, 1, 10000),
-                                 by_chance(random_, 0.5f) ? Section::X : Section::Y};
-        const auto bundle = AimedBundle::aim(lens_, object, wavelength_nm());
+        const camera::ObjectPoint object{
+            between(random_, 0, 80),
+            by_chance(random_, 0.5f) ? INFINITY : between(random_, 1, 10000),
+            by_chance(random_, 0.5f) ? camera::Section::X : camera::Section::Y};
+        const auto bundle = camera::AimedBundle::aim(lens_, object, wavelength_nm());
         if (!bundle) return;
-        for (const BundleRay& ray : bundle->trace(bundle->grid(5), lens_.film_mm()))
+        for (const camera::BundleRay& ray : bundle->trace(bundle->grid(5), lens_.film_mm()))
             require(!std::isnan(ray.film_mm[0] + ray.film_mm[1]), "a bundle's film point is NaN");
     }
 
     void fields() {
-        const auto angle = field_of_height_deg(lens_, between(random_, 0, 20), lens_.film_mm());
+        const auto angle =
+            camera::field_of_height_deg(lens_, between(random_, 0, 20), lens_.film_mm());
         require(!angle || (*angle >= 0 && *angle <= 120), "a field is out of its range");
-        (void)distortion(lens_, between(random_, 1, 60), lens_.film_mm(), INFINITY);
-        (void)stated_figures(lens_);
+        (void)camera::distortion(lens_, between(random_, 1, 60), lens_.film_mm(), INFINITY);
+        (void)camera::stated_figures(lens_);
     }
 
     void camera() {
         const double film_behind_mm = lens_.prescription().surfaces.back().thickness_mm;
         const auto& stop = lens_.prescription().surfaces[size_t(lens_.stop())];
-        const ApertureShape shapes[] = {Disk{}, regular_polygon(6, 10, 0.3), star(5)};
-        LensCameraInput in{.lens = std::make_shared<const Lens>(lens_),
-                           .iris = Iris(shapes[int(random_.next() * 3)],
-                                        stop.semi_diameter_mm * between(random_, 0.01, 1.2)),
-                           .to_world = M44f()};
+        const camera::ApertureShape shapes[] = {camera::Disk{}, camera::regular_polygon(6, 10, 0.3),
+                                                camera::star(5)};
+        camera::LensCameraInput in{
+            .lens = std::make_shared<const camera::Lens>(lens_),
+            .iris = camera::Iris(shapes[int(random_.next() * 3)],
+                                 stop.semi_diameter_mm * between(random_, 0.01, 1.2)),
+            .to_world = M44f()};
         in.film_mm = lens_.vertex_mm(lens_.last()) +
                      (film_behind_mm > 0 ? film_behind_mm : between(random_, 1, 100));
         in.entrance_pupil_mm = entrance_pupil_mm_;
-        const DispersionMode modes[] = {DispersionMode::Shared, DispersionMode::Split,
-                                        DispersionMode::Hero};
+        const camera::DispersionMode modes[] = {camera::DispersionMode::Shared,
+                                                camera::DispersionMode::Split,
+                                                camera::DispersionMode::Hero};
         in.dispersion = modes[int(random_.next() * 3)];
-        const LensCamera made(std::move(in));
+        const camera::LensCamera made(std::move(in));
         ++tally_.cameras;
         Bands bands = Bands::rgb();
         bands.spectral = true;
@@ -300,7 +310,8 @@ class Trial {
             for (int k = 0; k < 4; ++k) bands.nm[k] = float(between(random_, 360, 830));
             const V2f u = random_.next2();
             const auto drawn = made.draw(film, u, of_sample);
-            require(all(drawn.weight >= 0.f) && all(drawn.weight < INFINITY), "a bad weight");
+            require(camera::all(drawn.weight >= 0.f) && camera::all(drawn.weight < INFINITY),
+                    "a bad weight");
             check(made.sample({random_.next2(), Sampler(SamplerKind::Owen, 1, {i, i, 0})},
                               of_sample));
         }
@@ -308,21 +319,22 @@ class Trial {
         require(std::isfinite(irradiance) && irradiance >= 0, "an irradiance is none");
         tally_.lit += irradiance > 0;
     }
-    static void check(const CameraSample& sample) {
+    static void check(const camera::CameraSample& sample) {
         require(sample.size() <= 4, "a bad number of rays");
         for (size_t i = 0; i < sample.size(); ++i) {
-            const CameraPath& path = sample[i];
+            const camera::CameraPath& path = sample[i];
             const V3f sum = path.ray.origin + path.ray.direction;
             require(std::isfinite(sum.x + sum.y + sum.z), "a camera ray is not finite");
             require(std::fabs(path.ray.direction.length() - 1) < 1e-4f, "a camera ray's length");
-            require(all(path.weight >= 0.f) && all(path.weight < INFINITY), "a bad path weight");
+            require(camera::all(path.weight >= 0.f) && camera::all(path.weight < INFINITY),
+                    "a bad path weight");
         }
     }
 
     Random& random_;
     Tally& tally_;
     Kind kind_;
-    Lens lens_;
+    camera::Lens lens_;
     bool sound_;  ///< numbers that a file may have, and glasses with an index
     double entrance_pupil_mm_ = 0;
 };

@@ -10,7 +10,7 @@
 #include "integrator/render/executor.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 constexpr V2i kFrame{96, 80};
@@ -207,4 +207,4 @@ TEST(Denoiser, AStopLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -7,11 +7,12 @@
 namespace petzval::test {
 
 /// Looks along the film point: x and y of a ray are those of the film.
-class FilmCamera final : public Camera {
+class FilmCamera final : public camera::Camera {
   public:
-    [[nodiscard]] CameraSample sample(const FilmPoint& at, const Bands& bands) const override {
-        CameraSample out;
-        CameraPath& path = out.add();
+    [[nodiscard]] camera::CameraSample sample(const camera::FilmPoint& at,
+                                              const Bands& bands) const override {
+        camera::CameraSample out;
+        camera::CameraPath& path = out.add();
         path.ray.direction = V3f(at.film.x, at.film.y, -1);
         path.weight = uniform(1.f, bands);
         path.lanes = bands.on;

@@ -8,7 +8,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::diffuse_material;
@@ -203,4 +203,4 @@ TEST(FrontAtBack, AHoleIsNoFront) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -9,7 +9,7 @@
 #include "camera/models/thin_lens.h"
 #include "tests/support/scenes.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using namespace test;
@@ -34,12 +34,12 @@ SmallFeature lamp_at(const V3f& centre, float reach_m, bool at_infinity = false)
 }
 
 /// From the origin along -z, through a lens 40 mm wide.
-ThinLensCamera camera() {
-    ThinLens lens;
+camera::ThinLensCamera camera() {
+    camera::ThinLens lens;
     lens.yfov_rad = 0.4f;
-    lens.iris = Iris(Disk{}, 20);
+    lens.iris = camera::Iris(camera::Disk{}, 20);
     lens.focus_m = 3;
-    return ThinLensCamera(lens);
+    return camera::ThinLensCamera(lens);
 }
 
 std::vector<SmallFeature> seen_in(World& world, const std::vector<SmallFeature>& lamps) {
@@ -55,11 +55,12 @@ std::vector<SmallFeature> seen_in_a_ball(const Material& material,
 }
 
 /// Refuses to be asked for more points of the film than one for each 8 pixels.
-struct BusyCamera : Camera {
-    ThinLensCamera of = camera();
+struct BusyCamera : camera::Camera {
+    camera::ThinLensCamera of = camera();
     mutable std::atomic<int> asked = 0;
 
-    [[nodiscard]] CameraSample sample(const FilmPoint& at, const Bands& bands) const override {
+    [[nodiscard]] camera::CameraSample sample(const camera::FilmPoint& at,
+                                              const Bands& bands) const override {
         if (++asked > kGlint_px.x * kGlint_px.y / 8) throw std::runtime_error("asked too often");
         return of.sample(at, bands);
     }
@@ -203,4 +204,4 @@ TEST(Highlights, OfImpossibleLampsAreNone) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -9,7 +9,7 @@
 #include "tests/support/statistics.h"
 #include "tests/support/traced_world.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using namespace test;
@@ -18,7 +18,7 @@ const V2i kSize(24, 16);
 
 // A closed box with a small lamp within, and a bright sky around it that no path can reach.
 struct ClosedRoom : World {
-    std::unique_ptr<Camera> camera;
+    std::unique_ptr<camera::Camera> camera;
 
     ClosedRoom() {
         const Material wall = diffuse_material(0.5f);
@@ -37,12 +37,12 @@ struct ClosedRoom : World {
         scene.sky = Sky::picture(sky, 16, 8, 0.f, 1.f);
         finish();
         lights = std::make_unique<LightChoice>(scene, LightChoiceKind::Tree);
-        ThinLens lens;
-        lens.to_world = look_at(V3f(0, 0, 1.8f), V3f(0, -0.5f, 0));
+        camera::ThinLens lens;
+        lens.to_world = camera::look_at(V3f(0, 0, 1.8f), V3f(0, -0.5f, 0));
         lens.aspect = 1.5f;
-        lens.iris = Iris(Disk{}, 50);
+        lens.iris = camera::Iris(camera::Disk{}, 50);
         lens.focus_m = 3;
-        camera = std::make_unique<ThinLensCamera>(lens);
+        camera = std::make_unique<camera::ThinLensCamera>(lens);
     }
     [[nodiscard]] LightChoice fitted() const {
         return fitted_by_pilot(*lights, scene, *bvh, *camera, Observer(), kSize);
@@ -124,4 +124,4 @@ TEST(LightPilot, LeavesOtherChoicesAlone) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

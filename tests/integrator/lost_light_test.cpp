@@ -6,7 +6,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::append;
@@ -180,4 +180,4 @@ TEST(LostLight, ABrightSpotOfTheSkyCountsByItsSize) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

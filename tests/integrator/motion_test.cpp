@@ -7,7 +7,7 @@
 #include "integrator/path/path.h"
 #include "tests/support/blurred.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using namespace test;
@@ -170,4 +170,4 @@ TEST(MotionPath, OfMappedNormals) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -9,7 +9,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using namespace test;
@@ -145,4 +145,4 @@ TEST(MovingVolumes, FacesThatShareAnEdgeAreNeighboursAtAllTimes) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -11,7 +11,7 @@
 #include "tests/integrator/film_camera.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::FilmCamera;
@@ -332,4 +332,4 @@ TEST(RenderToNoise, ABlackPictureIsDone) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

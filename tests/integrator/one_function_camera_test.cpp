@@ -11,20 +11,21 @@
 #include "tests/support/scenes.h"
 #include "tests/support/traced_world.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 /// Equidistant fisheye at the origin: the angle from the axis, -z, grows with the distance from the
 /// middle of the film, 180 degrees at its edge.
-class Fisheye final : public Camera {
+class Fisheye final : public camera::Camera {
   public:
-    [[nodiscard]] CameraSample sample(const FilmPoint& at, const Bands& bands) const override {
-        CameraSample out;
+    [[nodiscard]] camera::CameraSample sample(const camera::FilmPoint& at,
+                                              const Bands& bands) const override {
+        camera::CameraSample out;
         const V2f from_middle(2 * at.film.x - 1, 1 - 2 * at.film.y);
         const float radius = from_middle.length();
         if (!(radius > 0 && radius < 1)) return out;
         const float angle = kPi * radius;
-        CameraPath& path = out.add();
+        camera::CameraPath& path = out.add();
         path.ray.direction = V3f(from_middle.x / radius * std::sin(angle),
                                  from_middle.y / radius * std::sin(angle), -std::cos(angle));
         path.weight = uniform(1.f, bands);
@@ -36,7 +37,7 @@ class Fisheye final : public Camera {
 constexpr int kSize_px = 64;
 
 /// Brightness of each pixel, row by row, of a lamp in the direction +x that is 2 x 20 degrees wide.
-std::vector<float> camera_picture(const Camera& camera) {
+std::vector<float> camera_picture(const camera::Camera& camera) {
     test::TracedWorld world;
     test::place(world.scene,
                 test::sphere(V3f(10, 0, 0), 10 * std::sin(std::numbers::pi_v<float> / 9), 64, true),
@@ -58,13 +59,13 @@ std::vector<float> camera_picture(const Camera& camera) {
 /// Of the lamp's picture, the share of the film's area, and where its middle is.
 struct Seen {
     double share = 0;
-    V2d middle{0.};
+    camera::V2d middle{0.};
 };
 Seen seen_through(const std::vector<float>& pixels) {
     Seen out;
     for (size_t i = 0; i < pixels.size(); ++i) {
-        const V2d film((double(i % kSize_px) + 0.5) / kSize_px,
-                       (double(i / kSize_px) + 0.5) / kSize_px);
+        const camera::V2d film((double(i % kSize_px) + 0.5) / kSize_px,
+                               (double(i / kSize_px) + 0.5) / kSize_px);
         out.share += double(pixels[i]);
         out.middle += film * double(pixels[i]);
     }
@@ -99,8 +100,9 @@ TEST(OneFunctionCamera, IsEnoughForAPicture) {
 TEST(OneFunctionCamera, IsMovedFromOutside) {
     const M44f still, quarter(0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
     const std::array steps{quarter, quarter};
-    const MovingCamera camera(std::make_shared<Fisheye>(),
-                              std::make_shared<Shutter>(ShutterCurve::box(), steps, still));
+    const camera::MovingCamera camera(
+        std::make_shared<Fisheye>(),
+        std::make_shared<camera::Shutter>(camera::ShutterCurve::box(), steps, still));
     const Seen seen = seen_through(camera_picture(camera));
     EXPECT_NEAR(seen.share, share_due(), 0.01 * share_due());
     EXPECT_NEAR(seen.middle.x, 0.5, 0.002);
@@ -108,4 +110,4 @@ TEST(OneFunctionCamera, IsMovedFromOutside) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

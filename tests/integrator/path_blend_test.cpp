@@ -5,7 +5,7 @@
 #include "tests/integrator/path_estimate.h"
 #include "tests/support/moving.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::diffuse_material;
@@ -425,4 +425,4 @@ TEST(Blend, OddAlphaIsClamped) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

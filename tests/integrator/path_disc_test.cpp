@@ -45,7 +45,8 @@ Ray to_floor(V2f) {
 
 /// Radiance along one ray.
 double disc_seen(const World& world, const V3f& from, const V3f& direction) {
-    return estimate(world, PathOptions(), 2, [&](V2f) { return ray_to(from, from + direction); })
+    return estimate(world, integrator::PathOptions(), 2,
+                    [&](V2f) { return ray_to(from, from + direction); })
         .value;
 }
 
@@ -56,15 +57,16 @@ TEST(SunDisc, KeepsTheIlluminanceOfThePoint) {
     for (const double angle_deg : {0.02, 0.53, 10., 70.}) {
         const World world = floor_under(sun(down, 10, angle_deg));
         const double truth = kAlbedoOverPi * 10 * 0.8;
-        const Mean both = angle_deg < 5
-                              ? estimate(world, PathOptions(), 256, to_floor)
-                              : expect_techniques_agree(world, PathOptions(), 4096, to_floor, 0.1);
+        const Mean both = angle_deg < 5 ? estimate(world, integrator::PathOptions(), 256, to_floor)
+                                        : expect_techniques_agree(world, integrator::PathOptions(),
+                                                                  4096, to_floor, 0.1);
         EXPECT_TRUE(agrees(both, truth, 1e-3 * truth)) << angle_deg << ": " << both << truth;
         EXPECT_LT(both.error, 2e-3 * truth) << angle_deg;
     }
     // Half the sky: radiance E / pi from everywhere.
     const World half = floor_under(sun(V3f(0, 0, -1), 10, 180));
-    expect_agrees(estimate(half, PathOptions(), 4096, to_floor), kAlbedoOverPi * 10, "half");
+    expect_agrees(estimate(half, integrator::PathOptions(), 4096, to_floor), kAlbedoOverPi * 10,
+                  "half");
 }
 
 // The edge of a roof at height h cuts a segment from the disc, which is a circle of radius
@@ -82,7 +84,7 @@ TEST(SunDisc, CastsAPenumbra) {
         const double truth = kAlbedoOverPi * 10 *
                              (std::acos(inside) - inside * std::sqrt(1 - inside * inside)) /
                              std::numbers::pi;
-        const Mean found = estimate(world, PathOptions(), 1024,
+        const Mean found = estimate(world, integrator::PathOptions(), 1024,
                                     [&](V2f) { return ray_to(V3f(4, 0, 0.5f), V3f(x, 0, 0)); });
         EXPECT_TRUE(agrees(found, truth, 2e-3 * kAlbedoOverPi * 10)) << t << found << truth;
     }
@@ -120,7 +122,7 @@ TEST(SunDisc, IsSeenInTheSkyAndInMirrors) {
 
 TEST(SunDisc, IsNotSeenThroughATransparentBackground) {
     const World world = floor_under(sun(V3f(0, 0, -1), 10, 0.53));
-    PathOptions options;
+    integrator::PathOptions options;
     options.transparent = true;
     float alpha = 0;
     const Mean e = estimate(
@@ -145,7 +147,7 @@ TEST(FlatLamp, LightsByItsConfigurationFactor) {
     for (const float r : {0.05f, 0.5f, 2.f}) {
         const World world = floor_under(over_floor(1, V2f(2 * r), true));
         const double truth = kAlbedoOverPi * 6 / (1 + double(r) * double(r));
-        const Mean found = estimate(world, PathOptions(), 4096, to_floor);
+        const Mean found = estimate(world, integrator::PathOptions(), 4096, to_floor);
         EXPECT_TRUE(agrees(found, truth, 1e-3 * truth)) << r << ": " << found << truth;
         EXPECT_LT(found.error, 3e-3 * truth);
     }
@@ -157,7 +159,7 @@ TEST(FlatLamp, LightsByItsConfigurationFactor) {
         const double truth =
             kAlbedoOverPi * nits * 2 *
             (a / root_a * std::atan(b / root_a) + b / root_b * std::atan(a / root_b));
-        const Mean found = estimate(world, PathOptions(), 4096, to_floor);
+        const Mean found = estimate(world, integrator::PathOptions(), 4096, to_floor);
         EXPECT_TRUE(agrees(found, truth, 1e-3 * truth)) << size << ": " << found << truth;
     }
 }
@@ -166,7 +168,7 @@ TEST(FlatLamp, LightsFromAfarAsAPointOfItsIntensity) {
     for (const bool ellipse : {false, true}) {
         const World world = floor_under(over_floor(20, V2f(0.3f, 0.5f), ellipse));
         const double truth = kAlbedoOverPi * 6 / 400;
-        const Mean found = estimate(world, PathOptions(), 256, to_floor);
+        const Mean found = estimate(world, integrator::PathOptions(), 256, to_floor);
         EXPECT_TRUE(agrees(found, truth, 1e-3 * truth)) << found << truth;
     }
 }
@@ -187,7 +189,7 @@ TEST(FlatLamp, ShinesFromItsFrontAlone) {
     lamp.to_world = M44f();
     lamp.to_world.rotate(V3f(kPi, 0, 0));  // upwards
     lamp.to_world *= M44f().setTranslation(V3f(0, 0, 1));
-    EXPECT_EQ(estimate(floor_under(lamp), PathOptions(), 64, to_floor).value, 0);
+    EXPECT_EQ(estimate(floor_under(lamp), integrator::PathOptions(), 64, to_floor).value, 0);
 }
 
 // What is not seen lights and is mirrored; panes before it change nothing of that.
@@ -209,7 +211,7 @@ TEST(UnseenLamp, IsNotSeenThroughPanesEither) {
         EXPECT_EQ(disc_seen(world, V3f(0, 0, 2), V3f(0, 0, 1)) > 5, !unseen);
         EXPECT_EQ(disc_seen(world, V3f(0, 0, 0.5f), V3f(0, 0, 1)) > 5, !unseen) << "behind a pane";
         EXPECT_GT(disc_seen(world, V3f(0, 0, 2), V3f(0, 4, 0.5f)), 5) << "in the mirror";
-        EXPECT_GT(estimate(world, PathOptions(), 64, to_floor).value, 0.1);
+        EXPECT_GT(estimate(world, integrator::PathOptions(), 64, to_floor).value, 0.1);
     }
 }
 

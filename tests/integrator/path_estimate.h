@@ -14,11 +14,11 @@ namespace petzval::test {
 // Mean red radiance over a bundle of rays; the error comes from 32 independent replicates, as the
 // points of one replicate are not independent.
 template <class MakeRay>
-Mean estimate(const World& world, const PathOptions& options, uint32_t samples,
+Mean estimate(const World& world, const integrator::PathOptions& options, uint32_t samples,
               const MakeRay& make_ray, float* alpha = nullptr) {
     constexpr int replicates = 32;
-    const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
-    PathStats stats;
+    const integrator::PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
+    integrator::PathStats stats;
     Moments means;
     for (uint32_t seed = 0; seed < replicates; ++seed) {
         double mean = 0;
@@ -37,14 +37,15 @@ Mean estimate(const World& world, const PathOptions& options, uint32_t samples,
 /// Holds that light samples alone and BSDF samples alone give the mean of both together, each with
 /// a relative error below most_error. Returns the mean of both.
 template <class MakeRay>
-Mean expect_techniques_agree(const World& world, PathOptions options, uint32_t samples,
+Mean expect_techniques_agree(const World& world, integrator::PathOptions options, uint32_t samples,
                              const MakeRay& make_ray, double most_error) {
-    const auto by = [&](Technique technique) {
+    const auto by = [&](integrator::Technique technique) {
         options.technique = technique;
         return estimate(world, options, samples, make_ray);
     };
-    const Mean both = by(Technique::Mis);
-    for (const Technique technique : {Technique::LightOnly, Technique::BsdfOnly}) {
+    const Mean both = by(integrator::Technique::Mis);
+    for (const integrator::Technique technique :
+         {integrator::Technique::LightOnly, integrator::Technique::BsdfOnly}) {
         const Mean one = by(technique);
         EXPECT_TRUE(agrees(both - one, 0)) << both << " and " << one;
         EXPECT_LT(one.error, most_error * one.value);

@@ -31,10 +31,10 @@ TEST(PathLamp, LightsAsAPointWould) {
     for (const float radius_m : {0.01f, 0.5f, 2.5f}) {
         const World world = floor_under_lamp({V3f(0, 3, 4), radius_m, Rgb(100.f)});
         const double truth = kLampAlbedoOverPi * 100 / 25 * 0.8;
-        const Mean both =
-            radius_m < 0.1f  // paths hardly ever find it by chance
-                ? estimate(world, PathOptions(), 1024, to_lit_floor)
-                : expect_techniques_agree(world, PathOptions(), 1024, to_lit_floor, 0.2);
+        const Mean both = radius_m < 0.1f  // paths hardly ever find it by chance
+                              ? estimate(world, integrator::PathOptions(), 1024, to_lit_floor)
+                              : expect_techniques_agree(world, integrator::PathOptions(), 1024,
+                                                        to_lit_floor, 0.2);
         EXPECT_TRUE(agrees(both, truth, 1e-3 * truth)) << radius_m << ": " << both << truth;
         EXPECT_LT(both.error, 2e-3 * truth) << radius_m;
     }
@@ -43,7 +43,7 @@ TEST(PathLamp, LightsAsAPointWould) {
 TEST(PathLamp, IsSeenAsBrightAsItIs) {
     const World world = floor_under_lamp({V3f(0, 3, 4), 0.5f, Rgb(100.f)});
     const auto at = [&](const V3f& target) {
-        return estimate(world, PathOptions(), 4,
+        return estimate(world, integrator::PathOptions(), 4,
                         [&](V2f) { return ray_to(V3f(0, -2, 1), target); });
     };
     const double nits = 100 / (std::numbers::pi * 0.25);
@@ -73,7 +73,8 @@ TEST(PathLamp, ABeamFallsOffByDirection) {
     for (const float radius_m : {0.1f, 0.4f, 0.9f}) {
         const World world = floor_under_lamp({V3f(0, 0, 2), radius_m, Rgb(8.f), -1, beam});
         const double truth = kLampAlbedoOverPi * beam_irradiance(8, radius_m, 2, beam);
-        const Mean both = expect_techniques_agree(world, PathOptions(), 4096, to_lit_floor, 0.2);
+        const Mean both =
+            expect_techniques_agree(world, integrator::PathOptions(), 4096, to_lit_floor, 0.2);
         EXPECT_TRUE(agrees(both, truth, 3e-3 * truth)) << radius_m << ": " << both << truth;
     }
     EXPECT_NEAR(beam_irradiance(8, 0.1, 2, beam), 2, 1e-6);
@@ -83,10 +84,11 @@ TEST(PathLamp, ABeamFallsOffByDirection) {
         EXPECT_EQ(dark.lights->probability(i, {V3f(3, 0, 0), V3f(0, 0, 1), false}), 0.f);
     const Beam aside{unit(V3f(1, 0, 0)), 0.99f, 0.97f};
     const World world = floor_under_lamp({V3f(0, 0, 2), 0.1f, Rgb(8.f), -1, aside});
-    EXPECT_EQ(estimate(world, PathOptions(), 64, to_lit_floor).value, 0);
+    EXPECT_EQ(estimate(world, integrator::PathOptions(), 64, to_lit_floor).value, 0);
     // Seen from within its cone, and from without.
     const auto seen = [&](const V3f& from) {
-        return estimate(world, PathOptions(), 4, [&](V2f) { return ray_to(from, V3f(0, 0, 2)); })
+        return estimate(world, integrator::PathOptions(), 4,
+                        [&](V2f) { return ray_to(from, V3f(0, 0, 2)); })
             .value;
     };
     EXPECT_NEAR(seen(V3f(5, 0, 2)), 8 / (std::numbers::pi * 0.01), 2);

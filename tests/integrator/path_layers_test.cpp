@@ -4,7 +4,7 @@
 
 #include "tests/integrator/path_estimate.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::bundle;
@@ -167,4 +167,4 @@ TEST(CoatedSurface, TechniquesAgree) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

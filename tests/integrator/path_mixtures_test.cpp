@@ -3,7 +3,7 @@
 // flat and curved, from both sides.
 #include "tests/integrator/path_estimate.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::Mean;
@@ -193,4 +193,4 @@ TEST(Mixtures, SamplesOfMetalWithGlassStaySmall) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

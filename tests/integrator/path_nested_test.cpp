@@ -2,7 +2,7 @@
 // Glass in glass: absorption and refraction where volumes overlap, touch and hold the camera.
 #include "tests/integrator/path_estimate.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::agrees;
@@ -404,4 +404,4 @@ TEST(NestedVolumes, TechniquesAgree) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -3,7 +3,7 @@
 
 #include "tests/integrator/path_estimate.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::bundle;
@@ -191,4 +191,4 @@ TEST(Path, NormalsFarFromTheTriangleMeanNoSmoothSurface) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

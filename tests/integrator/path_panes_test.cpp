@@ -4,7 +4,7 @@
 
 #include "tests/integrator/path_estimate.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::bundle;
@@ -307,4 +307,4 @@ TEST(ClearGlass, PathsThatCannotLeaveEnd) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -6,7 +6,7 @@
 #include "tests/integrator/path_estimate.h"
 #include "tests/support/scenes.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::bundle;
@@ -101,4 +101,4 @@ TEST_P(Sheets, BlendCountsOnce) {
 INSTANTIATE_TEST_SUITE_P(BackFirst, Sheets, testing::Bool());
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

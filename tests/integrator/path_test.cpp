@@ -6,7 +6,7 @@
 
 #include "tests/integrator/path_estimate.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::bundle;
@@ -321,4 +321,4 @@ TEST(Path, WhatGoesOnByChanceCountsMore) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -2,7 +2,7 @@
 // Paths through glass and what it absorbs.
 #include "tests/integrator/path_estimate.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::bundle;
@@ -131,4 +131,4 @@ TEST(Path, TechniquesAgreeInsideAVolume) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -12,11 +12,11 @@
 #include "integrator/render/executor.h"
 #include "tests/support/traced_world.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 struct Studio : test::TracedWorld {
-    std::unique_ptr<Camera> camera;
+    std::unique_ptr<camera::Camera> camera;
 
     explicit Studio(V2i size) {
         using namespace test;
@@ -27,12 +27,12 @@ struct Studio : test::TracedWorld {
         place(scene, quad(V3f(-1, 1.5f, 1), V3f(2, 0, 0), V3f(0, 1, 0.5f)), emitter_material(5.f));
         scene.sky = Sky::uniform(Rgb(0.1f, 0.2f, 0.4f));
         finish();
-        ThinLens lens;
-        lens.to_world = look_at(V3f(0.5f, 0.7f, 4), V3f(0.f));
+        camera::ThinLens lens;
+        lens.to_world = camera::look_at(V3f(0.5f, 0.7f, 4), V3f(0.f));
         lens.aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
-        lens.iris = Iris(Disk{}, 50);
+        lens.iris = camera::Iris(camera::Disk{}, 50);
         lens.focus_m = 3.5f;
-        camera = std::make_unique<ThinLensCamera>(lens);
+        camera = std::make_unique<camera::ThinLensCamera>(lens);
     }
 };
 
@@ -168,7 +168,7 @@ class CountingTracer {
 template <class Executor>
 void expect_all_threads_work(int threads) {
     const CountingTracer tracer(threads);
-    const ThinLensCamera camera((ThinLens()));
+    const camera::ThinLensCamera camera((camera::ThinLens()));
     Film film(kRender_px, kAllPixels, {});
     RenderMonitor monitor;
     Executor executor(threads);
@@ -356,7 +356,7 @@ class BadTracer {
 };
 
 TEST(Render, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
-    const ThinLensCamera camera((ThinLens()));
+    const camera::ThinLensCamera camera((camera::ThinLens()));
     Film film(kRender_px, kAllPixels, {});
     RenderMonitor monitor;
     ThreadExecutor executor(2);
@@ -369,4 +369,4 @@ TEST(Render, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

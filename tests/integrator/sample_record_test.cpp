@@ -7,7 +7,7 @@
 #include "camera/models/thin_lens.h"
 #include "tests/support/scenes.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::diffuse_material;
@@ -29,14 +29,14 @@ struct Below : test::World {
     /// Samples of the one pixel.
     [[nodiscard]] SampleRecord sample(uint32_t index = 0) {
         if (!bvh) finish();
-        ThinLens lens;
+        camera::ThinLens lens;
         lens.to_world = M44f();
         lens.to_world.setTranslation(V3f(0, 0, kCamera_m));
         lens.yfov_rad = 0.01f;
         lens.aspect = 1;
         const RenderJob job;
-        return SampleRecord::of(scene, *bvh, *lights, options, ThinLensCamera(lens), job, {1, 1},
-                                {0, 0, index});
+        return SampleRecord::of(scene, *bvh, *lights, options, camera::ThinLensCamera(lens), job,
+                                {1, 1}, {0, 0, index});
     }
     [[nodiscard]] const Material* material(size_t i) const { return &scene.materials[i]; }
 };
@@ -254,4 +254,4 @@ TEST(SampleRecord, HiddenFacesAreToldOf) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

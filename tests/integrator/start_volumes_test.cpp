@@ -7,7 +7,7 @@
 #include "core/sampling/sampler.h"
 #include "tests/support/scenes.h"
 
-namespace petzval {
+namespace petzval::integrator {
 namespace {
 
 using test::box;
@@ -62,4 +62,4 @@ TEST(NestedVolumes, OneRayThatSlipsThroughASeamDoesNotDecide) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::integrator

@@ -86,8 +86,8 @@ Constraints constraints() {
         c.a[i][i] = c.a[kKnots + i][kKnots + i] = 1;
         c.a[2 * kKnots + i][i] = c.a[2 * kKnots + i][kKnots + i] = 1;
     }
-    const auto xyz_bar = standard_observer();
-    const SpectrumTable d65 = find_illuminant("d65");
+    const auto xyz_bar = io::standard_observer();
+    const SpectrumTable d65 = io::find_illuminant("d65");
     const V3d white = respond(xyz_bar, d65);
     const Matrix3 to_rgb = srgb_to_xyz(white / white.y).inverse();
     for (size_t knot = 0; knot < kKnots; ++knot) {

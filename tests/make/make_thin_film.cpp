@@ -18,8 +18,8 @@ constexpr double kCarrier_nm[3] = {610, 545, 460};
 
 /// Sensitivities of linear sRGB to a reflectance under D65, each with the sum 1.
 std::array<std::vector<double>, 3> sensitivities() {
-    const auto xyz_bar = standard_observer();
-    const SpectrumTable d65 = find_illuminant("d65");
+    const auto xyz_bar = io::standard_observer();
+    const SpectrumTable d65 = io::find_illuminant("d65");
     const V3d white = respond(xyz_bar, d65);
     const Matrix3 to_srgb = srgb_to_xyz(white / white.y).inverse();
     std::array<std::vector<double>, 3> out;

@@ -22,16 +22,17 @@ constexpr uint32_t kSeeds = 8, kReferenceSeeds = 4, kFirstReferenceSeed = 1000;
 
 struct Strategy {
     std::string name;
-    DispersionMode mode;
-    RenderSetup setup{};
+    camera::DispersionMode mode;
+    apps::RenderSetup setup{};
     std::vector<Film> films{};
     std::vector<double> cpu_s{};
 };
 
 // How far apart, in pixels, rays of 450 and 650 nm from the middle of the crop meet the plane of
 // focus that started in one direction: root of the mean square over the iris.
-double parted_px(const RenderSetup& split, const RenderJob& job, V2i size, Rect crop) {
-    const CameraReport& report = split.from.camera;
+double parted_px(const apps::RenderSetup& split, const integrator::RenderJob& job, V2i size,
+                 Rect crop) {
+    const apps::CameraReport& report = split.from.camera;
     const V3f axis = (report.target - report.eye).normalized();
     const Bands bands =
         split.view.observer.at(f4{450, 650, 550, 550}, splat(1e-3f), m4{-1, -1, 0, 0});
@@ -40,7 +41,8 @@ double parted_px(const RenderSetup& split, const RenderJob& job, V2i size, Rect 
     int count = 0;
     for (uint32_t i = 0; i < 4096; ++i) {
         const Sampler sampler(job.sampler, job.seed, {crop.x0, crop.y0, i});
-        const CameraSample seen = split.view.still->sample({middle / V2f(size), sampler}, bands);
+        const camera::CameraSample seen =
+            split.view.still->sample({middle / V2f(size), sampler}, bands);
         if (seen.size() != 2) continue;
         const auto on_plane = [&](const Ray& ray) {
             const float t =
@@ -55,10 +57,11 @@ double parted_px(const RenderSetup& split, const RenderJob& job, V2i size, Rect 
     return std::sqrt(sum / count) / pixel_m;
 }
 
-void render_into(Strategy& strategy, RenderJob job, V2i size, Rect crop) {
+void render_into(Strategy& strategy, integrator::RenderJob job, V2i size, Rect crop) {
     job.observer = strategy.setup.view.observer;
-    const PathTracer<Bvh> tracer(*strategy.setup.prepared.scene, *strategy.setup.prepared.bvh,
-                                 *strategy.setup.prepared.lights, PathOptions());
+    const integrator::PathTracer<Bvh> tracer(
+        *strategy.setup.prepared.scene, *strategy.setup.prepared.bvh,
+        *strategy.setup.prepared.lights, integrator::PathOptions());
     Film film(size, crop, {});
     strategy.cpu_s.push_back(timed_s(tracer, *strategy.setup.view.camera, job, film));
     strategy.films.push_back(std::move(film));
@@ -124,10 +127,10 @@ void print(std::vector<Strategy>& strategies, size_t split, size_t shared,
 
 int run(int argc, char** argv) {
     CLI::App app("Cost, noise and bias of the ways to carry wavelengths through a lens.");
-    SceneRequest request;
-    CameraRequest& camera = request.camera;
+    apps::SceneRequest request;
+    apps::CameraRequest& camera = request.camera;
     std::string size = "240x160", crop_text, focus = "1m";
-    RenderJob job;
+    integrator::RenderJob job;
     job.end_sample = 64;
     uint32_t reference_spp = 1024;
     app.add_option("scene", request.scene)->required();
@@ -139,31 +142,31 @@ int run(int argc, char** argv) {
     app.add_option("--spp", job.end_sample);
     app.add_option("--reference-spp", reference_spp, "of each of four renders");
     CLI11_PARSE(app, argc, argv);
-    request.size = parse_size("--size", size);
-    camera.focus = parse_focus("--focus", focus);
-    std::optional<Crop> part;
-    if (!crop_text.empty()) part = parse_crop("--crop", crop_text);
-    const Rect crop = pixels_of(part, request.size);
+    request.size = apps::parse_size("--size", size);
+    camera.focus = apps::parse_focus("--focus", focus);
+    std::optional<apps::Crop> part;
+    if (!crop_text.empty()) part = apps::parse_crop("--crop", crop_text);
+    const Rect crop = apps::pixels_of(part, request.size);
     flush_denormals();
-    request.spectral.mode = SpectralMode::Wavelengths;
+    request.spectral.mode = apps::SpectralMode::Wavelengths;
 
     std::vector<Strategy> strategies;
-    strategies.push_back({"shared", DispersionMode::Shared});
-    strategies.push_back({"split", DispersionMode::Split});
-    strategies.push_back({"hero", DispersionMode::Hero});
+    strategies.push_back({"shared", camera::DispersionMode::Shared});
+    strategies.push_back({"split", camera::DispersionMode::Split});
+    strategies.push_back({"hero", camera::DispersionMode::Hero});
     for (Strategy& s : strategies) {
         camera.dispersion = s.mode;
-        s.setup = set_up_render(request, [](const std::string&) {});
+        s.setup = apps::set_up_render(request, [](const std::string&) {});
     }
     for (uint32_t seed = 0; seed < kSeeds; ++seed) {
         job.seed = seed;
         for (size_t i = 0; i < strategies.size(); ++i)  // the machine's speed drifts
             render_into(strategies[(i + seed) % strategies.size()], job, request.size, crop);
     }
-    Strategy reference{"reference", DispersionMode::Split};
-    camera.dispersion = DispersionMode::Split;
-    reference.setup = set_up_render(request, [](const std::string&) {});
-    RenderJob long_job = job;
+    Strategy reference{"reference", camera::DispersionMode::Split};
+    camera.dispersion = camera::DispersionMode::Split;
+    reference.setup = apps::set_up_render(request, [](const std::string&) {});
+    integrator::RenderJob long_job = job;
     long_job.end_sample = reference_spp;
     for (uint32_t i = 0; i < kReferenceSeeds; ++i) {
         long_job.seed = kFirstReferenceSeed + i;

@@ -19,7 +19,7 @@ int main_of(int count, char** words) {
         return 2;
     }
     constexpr float kSunRadius = 0.53f / 2 * kDegree_rad;
-    const test::GhostLight ghosts(test::ghostly(words[1], Coating::Uncoated),
+    const test::GhostLight ghosts(test::ghostly(words[1], camera::Coating::Uncoated),
                                   test::sun_at(std::atof(words[2]), kSunRadius));
     const auto number = [&](int i, uint32_t other) {
         return count > i ? uint32_t(std::atoi(words[i])) : other;

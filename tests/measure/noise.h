@@ -77,13 +77,14 @@ template <class F>
 }
 
 /// CPU seconds of a render on one thread.
-[[nodiscard]] inline double timed_s(const PathTracer<>& tracer, const Camera& camera,
-                                    const RenderJob& job, Film& film) {
-    RenderMonitor monitor;
-    ThreadExecutor executor(1);
-    const double start_s = process_cpu_s();
-    static_cast<void>(render(tracer, camera, job, film, executor, monitor));
-    return process_cpu_s() - start_s;
+[[nodiscard]] inline double timed_s(const integrator::PathTracer<>& tracer,
+                                    const camera::Camera& camera, const integrator::RenderJob& job,
+                                    Film& film) {
+    integrator::RenderMonitor monitor;
+    integrator::ThreadExecutor executor(1);
+    const double start_s = io::process_cpu_s();
+    static_cast<void>(integrator::render(tracer, camera, job, film, executor, monitor));
+    return io::process_cpu_s() - start_s;
 }
 
 /// Of values that are not empty; sorts them.

@@ -156,13 +156,13 @@ int run(int argc, char** argv) {
     std::ofstream csv;
     if (!s.csv.empty()) {
         csv.open(s.csv, std::ios::app);
-        if (!csv) throw OutputError(s.csv, "", "cannot be written");
+        if (!csv) throw io::OutputError(s.csv, "", "cannot be written");
         if (csv.tellp() == 0)
             csv << "scene,kind,tolerance,model,predicted,true,low,high,chosen,samples,"
                    "noise_predicted,noise_true,noise_low,at_least,plan_cpu_s,decoy,needless,"
                    "outside\n";
     }
-    TbbExecutor executor(s.threads);
+    integrator::TbbExecutor executor(s.threads);
     std::map<std::string, Tally> kinds;
     Tally all;
     fmt::print(

@@ -44,8 +44,8 @@ std::string percent(double square) {
 }
 
 // measured: of the square.
-void judge(const std::string& where, const std::string& name, double predicted, Estimate measured,
-           double tolerance, bool chosen, Tally& tally) {
+void judge(const std::string& where, const std::string& name, double predicted,
+           apps::Estimate measured, double tolerance, bool chosen, Tally& tally) {
     constexpr double kOneSided95 = 1.645, kTooCareful = 3, kSmallShare = 0.25;
     const double low = measured.mean - kOneSided95 * measured.error;
     const double high = std::max(measured.mean, 0.) + kOneSided95 * measured.error;
@@ -68,49 +68,51 @@ void judge(const std::string& where, const std::string& name, double predicted, 
 }
 
 void check(const std::string& scene, const std::string& lens, const Settings& settings,
-           float focus_m, TbbExecutor& executor, Tally& tally) {
+           float focus_m, integrator::TbbExecutor& executor, Tally& tally) {
     const auto silent = [](const std::string&) {};
-    PlanRequest request;
+    apps::PlanRequest request;
     request.scene.scene = scene;
-    request.scene.size = parse_size("--size", settings.size);
+    request.scene.size = apps::parse_size("--size", settings.size);
     request.scene.camera.lens = lens;
-    if (focus_m > 0) request.scene.camera.focus = FocusDistance{focus_m};
-    request.tolerance = parse_share("--tolerance", settings.tolerance);
-    const Plan plan = make_plan(request, executor, silent, settings.plan_samples);
-    const RenderSetup first = set_up_render(request.scene, silent);
-    const Pilot pilot(request.scene.size, settings.pixels, executor, kSeed);
-    std::vector<std::unique_ptr<PilotModel>> models;
+    if (focus_m > 0) request.scene.camera.focus = apps::FocusDistance{focus_m};
+    request.tolerance = apps::parse_share("--tolerance", settings.tolerance);
+    const apps::Plan plan = apps::make_plan(request, executor, silent, settings.plan_samples);
+    const apps::RenderSetup first = apps::set_up_render(request.scene, silent);
+    const apps::Pilot pilot(request.scene.size, settings.pixels, executor, kSeed);
+    std::vector<std::unique_ptr<apps::PilotModel>> models;
     const auto samples =
         static_cast<uint32_t>(std::min<uint64_t>(plan.samples, settings.most_samples));
-    for (const PlanCandidate& c : plan.candidates) {
+    for (const apps::PlanCandidate& c : plan.candidates) {
         models.push_back(
-            pilot.model(set_up_view(first, c.scene, silent), request.job, request.path));
+            pilot.model(apps::set_up_view(first, c.scene, silent), request.job, request.path));
         pilot.sample(*models.back(), std::max(samples, 64u));
     }
-    const PilotModel& full = *models.back();
-    const double floor = pilot_floor(pilot, full);
+    const apps::PilotModel& full = *models.back();
+    const double floor = apps::pilot_floor(pilot, full);
     const std::string where =
         fmt::format("{} | {}", std::filesystem::path(scene).stem().string(), lens);
     bool simple = false, needless = false;
     for (size_t i = 0; i < models.size(); ++i) {
-        const PlanCandidate& c = plan.candidates[i];
+        const apps::PlanCandidate& c = plan.candidates[i];
         const bool chosen = c.model == plan.chosen, fullest = i + 1 == models.size();
-        Estimate square;
+        apps::Estimate square;
         if (!fullest) {
-            square = square_error(pilot, {{models[i].get(), 1}, {&full, -1}},
-                                  {models[i].get(), &full, floor});
-            judge(where, name_of(c.model), c.predicted(), square, request.tolerance, chosen, tally);
+            square = apps::square_error(pilot, {{models[i].get(), 1}, {&full, -1}},
+                                        {models[i].get(), &full, floor});
+            judge(where, apps::name_of(c.model), c.predicted(), square, request.tolerance, chosen,
+                  tally);
             const double third = std::pow(request.tolerance / 3, 2);
-            const bool does = square.high() < third && c.model < PlanModel::Hero;
+            const bool does = square.high() < third && c.model < apps::PlanModel::Hero;
             simple = simple || does;
             needless = needless || (does && c.model < plan.chosen && !c.inside);
         }
         if (!chosen) continue;
         const auto chosen_model =
-            pilot.model(set_up_view(first, c.scene, silent), request.job, request.path);
+            pilot.model(apps::set_up_view(first, c.scene, silent), request.job, request.path);
         pilot.sample(*chosen_model, samples);
-        const Estimate noise =
-            noise_of(pilot, *chosen_model, {chosen_model.get(), &full, floor}).variances.back();
+        const apps::Estimate noise =
+            apps::noise_of(pilot, *chosen_model, {chosen_model.get(), &full, floor})
+                .variances.back();
         const double scale = double(samples) / double(plan.samples);
         judge(where, fmt::format("all, {} samples", plan.samples), plan.error(),
               {square.mean + noise.mean * scale, std::hypot(square.error, noise.error * scale)},
@@ -135,8 +137,8 @@ int run(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     flush_denormals();
     if (s.lenses.empty())
-        for (const LensSummary& lens : list_lenses()) s.lenses.push_back(lens.name);
-    TbbExecutor executor(2);
+        for (const io::LensSummary& lens : io::list_lenses()) s.lenses.push_back(lens.name);
+    integrator::TbbExecutor executor(2);
     Tally tally;
     fmt::print("{}, tolerance {}; errors in %; *: chosen\n\n", s.size, s.tolerance);
     fmt::print(
@@ -146,7 +148,7 @@ int run(int argc, char** argv) {
         for (const std::string& lens : s.lenses) {
             try {
                 check(scene, lens, s, s.focus_m, executor, tally);
-            } catch (const ArgumentError& e) {  // a long lens that cannot focus so near
+            } catch (const io::ArgumentError& e) {  // a long lens that cannot focus so near
                 if (s.focus_m > 0)
                     check(scene, lens, s, 10 * s.focus_m, executor, tally);
                 else

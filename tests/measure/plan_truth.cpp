@@ -117,7 +117,7 @@ Sum bias_of(const TruthPictures& of, size_t model, bool matters, bool crossed) {
 double floor_of(const Replicates& of, const std::vector<TruthPixel>& pixels) {
     Chosen all;
     all.fill(true);
-    SymmetricFloor floor;
+    io::SymmetricFloor floor;
     for (size_t p = 0; p < pixels.size(); ++p) {
         const V3f mean(mean_of(of[p], all));
         floor.add(double(luminance(Rgb(mean.x, mean.y, mean.z))), pixels[p].stands_for);
@@ -192,7 +192,7 @@ Sum pixel_noise(const PixelReplicates& of, double samples, V3d elsewhere, double
     for (const V3d& r : of) {
         const V3d reference = (all - r * samples) / others;
         double v = 0;
-        for (int c = 0; c < 3; ++c) v += symmetric_square(r[c], reference[c], floor) / 3;
+        for (int c = 0; c < 3; ++c) v += io::symmetric_square(r[c], reference[c], floor) / 3;
         v /= 1 + samples / others;  // the reference's own noise
         sum += v;
         squares += v * v;
@@ -223,35 +223,35 @@ std::vector<TruthPixel> truth_pixels(const test::PlanScene& scene) {
     return out;
 }
 
-void render_replicates(const RenderSetup& setup, const PlanRequest& request,
+void render_replicates(const apps::RenderSetup& setup, const apps::PlanRequest& request,
                        const std::vector<TruthPixel>& pixels, const std::vector<uint32_t>& samples,
-                       uint32_t turn, TbbExecutor& executor, Replicates& into) {
-    PathOptions options = request.path;
+                       uint32_t turn, integrator::TbbExecutor& executor, Replicates& into) {
+    integrator::PathOptions options = request.path;
     options.visible_background = setup.view.visible_background;
-    const PathTracer<Bvh> tracer(*setup.prepared.scene, *setup.prepared.bvh, *setup.prepared.lights,
-                                 options);
+    const integrator::PathTracer<Bvh> tracer(*setup.prepared.scene, *setup.prepared.bvh,
+                                             *setup.prepared.lights, options);
     into.resize(pixels.size());
     executor.run(static_cast<int>(pixels.size()), [&](int task, int) {
         const auto p = static_cast<size_t>(task);
         if (samples[p] == 0) return;
         const TruthPixel& at = pixels[p];
-        RenderJob job = request.job;
+        integrator::RenderJob job = request.job;
         job.observer = setup.view.observer;
-        PathStats stats;
+        integrator::PathStats stats;
         for (uint32_t k = 0; k < kTruthReplicates; ++k) {
             job.seed = hash32(kFirstSeed + turn, k);
             Film film(request.scene.size, {at.x, at.y, at.x + 1, at.y + 1}, {});
-            render_samples(tracer, *setup.view.camera, job, {{at.x, at.y}, 0, samples[p]}, film,
-                           stats);
+            integrator::render_samples(tracer, *setup.view.camera, job,
+                                       {{at.x, at.y}, 0, samples[p]}, film, stats);
             const V4f c = film.colour(at.x, at.y);
             into[p][k] = V3d(c.x, c.y, c.z);
         }
     });
 }
 
-TruthPictures truth_pictures(const test::PlanScene& scene, const PlanRequest& request,
-                             const std::vector<const RenderSetup*>& models, double budget,
-                             TbbExecutor& executor) {
+TruthPictures truth_pictures(const test::PlanScene& scene, const apps::PlanRequest& request,
+                             const std::vector<const apps::RenderSetup*>& models, double budget,
+                             integrator::TbbExecutor& executor) {
     constexpr uint32_t kFirstTurn = 0, kSecondTurn = 1;
     TruthPictures out;
     out.pixels = truth_pixels(scene);
@@ -276,14 +276,14 @@ TruthPictures truth_pictures(const test::PlanScene& scene, const PlanRequest& re
 Bounded square_bias(const TruthPictures& of, size_t model, bool matters) {
     const Sum crossed = bias_of(of, model, matters, true);
     const Sum all = bias_of(of, model, matters, false);
-    const auto possible = [](double v) { return std::clamp(v, 0., kMostSymmetricMse); };
+    const auto possible = [](double v) { return std::clamp(v, 0., io::kMostSymmetricMse); };
     return {possible((crossed.mean + all.mean) / 2), possible(std::min(crossed.low(), all.low())),
             possible(std::max(crossed.high(), all.high()))};
 }
 
-Bounded square_noise(const TruthPictures& of, size_t model, const RenderSetup& setup,
-                     const PlanRequest& request, uint64_t samples, double budget,
-                     TbbExecutor& executor) {
+Bounded square_noise(const TruthPictures& of, size_t model, const apps::RenderSetup& setup,
+                     const apps::PlanRequest& request, uint64_t samples, double budget,
+                     integrator::TbbExecutor& executor) {
     constexpr uint32_t kThirdTurn = 2;
     const std::vector<TruthPixel>& pixels = of.pixels;
     const Replicates& seen = of.shown[model];

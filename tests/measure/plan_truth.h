@@ -32,9 +32,9 @@ using Replicates = std::vector<std::array<V3d, kTruthReplicates>>;
 
 /// Renders pixels, each replicate with as many samples as `samples` says for its pixel; where that
 /// is 0, `into` stays as it is. turn: another one has other seeds.
-void render_replicates(const RenderSetup&, const PlanRequest&, const std::vector<TruthPixel>&,
-                       const std::vector<uint32_t>& samples, uint32_t turn, TbbExecutor&,
-                       Replicates& into);
+void render_replicates(const apps::RenderSetup&, const apps::PlanRequest&,
+                       const std::vector<TruthPixel>&, const std::vector<uint32_t>& samples,
+                       uint32_t turn, integrator::TbbExecutor&, Replicates& into);
 
 /// Pictures of models through the same pixels, with the same seeds.
 struct TruthPictures {
@@ -46,9 +46,9 @@ struct TruthPictures {
 /// Pictures of models, the last of them the fullest, with about so many samples in all. Half of
 /// them is spread evenly. The other half goes to pixels about which the first found noise in the
 /// differences. They are rendered anew: what they had before is dropped.
-[[nodiscard]] TruthPictures truth_pictures(const test::PlanScene&, const PlanRequest&,
-                                           const std::vector<const RenderSetup*>& models,
-                                           double budget, TbbExecutor&);
+[[nodiscard]] TruthPictures truth_pictures(const test::PlanScene&, const apps::PlanRequest&,
+                                           const std::vector<const apps::RenderSetup*>& models,
+                                           double budget, integrator::TbbExecutor&);
 
 /// Symmetric MSE of two models without noise. Of where models may differ, or of the other pixels:
 /// what these add must be nothing.
@@ -64,8 +64,8 @@ struct TruthPictures {
 /// Symmetric MSE by noise of a picture with so many samples, against many samples of the same
 /// model. With `budget` samples of all pixels together it measures only as many of them as that
 /// pays, drawn by their share of the noise. Beyond 2048 samples it falls in proportion.
-[[nodiscard]] Bounded square_noise(const TruthPictures&, size_t model, const RenderSetup&,
-                                   const PlanRequest&, uint64_t samples, double budget,
-                                   TbbExecutor&);
+[[nodiscard]] Bounded square_noise(const TruthPictures&, size_t model, const apps::RenderSetup&,
+                                   const apps::PlanRequest&, uint64_t samples, double budget,
+                                   integrator::TbbExecutor&);
 
 }  // namespace petzval

@@ -49,6 +49,6 @@ struct Verdict {
 };
 
 /// Verdict on the plan of plan_scene(index).
-[[nodiscard]] Verdict judge(uint32_t index, const JudgeBudget&, TbbExecutor&);
+[[nodiscard]] Verdict judge(uint32_t index, const JudgeBudget&, integrator::TbbExecutor&);
 
 }  // namespace petzval

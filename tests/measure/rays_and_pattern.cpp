@@ -27,10 +27,12 @@ constexpr double kStops[] = {0, 4, 8, 16, 22};  // 0: wide open
 constexpr double kShares[] = {0, 0.7, 1};       // of the half field
 constexpr double kRms[] = {0, 0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.15, 0.25, 0.5, 1, 2, INFINITY};
 
-std::optional<LensBench> set_up(const Lens& whole, double fnumber, FocusBy by) {
-    if (fnumber == 0) return LensBench::focused(whole, INFINITY, by);
-    const auto stopped = stopped_down(whole, fnumber);
-    return stopped ? LensBench::focused(Lens(*stopped), INFINITY, by) : std::nullopt;
+std::optional<camera::LensBench> set_up(const camera::Lens& whole, double fnumber,
+                                        camera::FocusBy by) {
+    if (fnumber == 0) return camera::LensBench::focused(whole, INFINITY, by);
+    const auto stopped = camera::stopped_down(whole, fnumber);
+    return stopped ? camera::LensBench::focused(camera::Lens(*stopped), INFINITY, by)
+                   : std::nullopt;
 }
 
 struct Row {
@@ -42,19 +44,21 @@ struct Row {
 struct Measured {
     double most_cycles_per_mm;
     std::vector<Row> rows{};
-    std::vector<RaysAndPattern> waves{};  // line by line
+    std::vector<camera::RaysAndPattern> waves{};  // line by line
     double slowest_s = 0;
 
-    [[nodiscard]] std::optional<RaysAndPattern> at_field(
-        const LensBench& bench, double field_deg, std::span<const WeighedWavelength> light) const {
-        const auto found = diffraction_limits(*bench.lens, bench.film_mm, bench.distance_mm,
-                                              {&field_deg, 1}, light, most_cycles_per_mm);
+    [[nodiscard]] std::optional<camera::RaysAndPattern> at_field(
+        const camera::LensBench& bench, double field_deg,
+        std::span<const camera::WeighedWavelength> light) const {
+        const auto found = camera::diffraction_limits(*bench.lens, bench.film_mm, bench.distance_mm,
+                                                      {&field_deg, 1}, light, most_cycles_per_mm);
         return found ? std::optional(found->worst) : std::nullopt;
     }
     // Cell of a stop: the three fields.
-    void add(Row& row, const LensBench& bench, double half_deg) {
-        std::vector<WeighedWavelength> light;
-        for (const SpectralLine& line : kSpectralLines) light.push_back({line.nm, 1. / 3});
+    void add(Row& row, const camera::LensBench& bench, double half_deg) {
+        std::vector<camera::WeighedWavelength> light;
+        for (const camera::SpectralLine& line : camera::kSpectralLines)
+            light.push_back({line.nm, 1. / 3});
         const std::clock_t before = std::clock();
         for (const double share : kShares) {
             const auto found = at_field(bench, share * half_deg, light);
@@ -68,8 +72,8 @@ struct Measured {
         }
         slowest_s = std::max(slowest_s, double(std::clock() - before) / CLOCKS_PER_SEC);
         for (const double share : kShares)
-            for (const SpectralLine& line : kSpectralLines) {
-                const WeighedWavelength one{line.nm, 1};
+            for (const camera::SpectralLine& line : camera::kSpectralLines) {
+                const camera::WeighedWavelength one{line.nm, 1};
                 if (const auto found = at_field(bench, share * half_deg, {&one, 1}))
                     waves.push_back(*found);
             }
@@ -84,26 +88,26 @@ void print_lenses(std::vector<Row> rows) {
 }
 
 // Median and nine tenths of a figure.
-std::string spread_of(const std::vector<const RaysAndPattern*>& all,
-                      double RaysAndPattern::*figure) {
+std::string spread_of(const std::vector<const camera::RaysAndPattern*>& all,
+                      double camera::RaysAndPattern::*figure) {
     std::vector<double> values;
-    for (const RaysAndPattern* one : all) values.push_back(one->*figure);
+    for (const camera::RaysAndPattern* one : all) values.push_back(one->*figure);
     std::sort(values.begin(), values.end());
     return fmt::format("{:.3f}, {:.3f}, {:.3f}", values[values.size() / 2],
                        values[values.size() * 9 / 10], values.back());
 }
 
-void print_by_rms(const std::vector<RaysAndPattern>& waves) {
+void print_by_rms(const std::vector<camera::RaysAndPattern>& waves) {
     fmt::print(
         "\n| RMS (λ) | waves | blur (λ N) | rays and pattern | pattern alone | rays alone |\n"
         "|---|---|---|---|---|---|\n");
     for (size_t i = 0; i + 1 < std::size(kRms); ++i) {
-        std::vector<const RaysAndPattern*> here;
-        for (const RaysAndPattern& wave : waves)
+        std::vector<const camera::RaysAndPattern*> here;
+        for (const camera::RaysAndPattern& wave : waves)
             if (wave.rms_waves >= kRms[i] && wave.rms_waves < kRms[i + 1]) here.push_back(&wave);
         if (here.empty()) continue;
         std::vector<double> blurs;
-        for (const RaysAndPattern* wave : here) blurs.push_back(wave->blur);
+        for (const camera::RaysAndPattern* wave : here) blurs.push_back(wave->blur);
         std::nth_element(blurs.begin(), blurs.begin() + std::ptrdiff_t(blurs.size() / 2),
                          blurs.end());
         const std::string range = std::isinf(kRms[i + 1])
@@ -112,24 +116,25 @@ void print_by_rms(const std::vector<RaysAndPattern>& waves) {
         const double blur = blurs[blurs.size() / 2];
         fmt::print("| {} | {} | {} | {} | {} | {} |\n", range, here.size(),
                    blur < 100 ? fmt::format("{:.2g}", blur) : fmt::format("{:.0f}", blur),
-                   spread_of(here, &RaysAndPattern::contrast_error),
-                   spread_of(here, &RaysAndPattern::error_of_pattern),
-                   spread_of(here, &RaysAndPattern::error_of_rays));
+                   spread_of(here, &camera::RaysAndPattern::contrast_error),
+                   spread_of(here, &camera::RaysAndPattern::error_of_pattern),
+                   spread_of(here, &camera::RaysAndPattern::error_of_rays));
     }
 }
 
-void print_rule(const std::vector<RaysAndPattern>& waves) {
+void print_rule(const std::vector<camera::RaysAndPattern>& waves) {
     const auto count = [&](auto which) {
-        std::vector<const RaysAndPattern*> here;
+        std::vector<const camera::RaysAndPattern*> here;
         int blurred = 0;
-        for (const RaysAndPattern& wave : waves)
+        for (const camera::RaysAndPattern& wave : waves)
             if (which(wave)) {
                 here.push_back(&wave);
                 blurred += wave.by_rays_and_pattern < wave.by_waves;
             }
         if (here.empty()) return std::string("none");
         return fmt::format("{} waves: median, 9 of 10, largest error {}; too blurred in {}",
-                           here.size(), spread_of(here, &RaysAndPattern::contrast_error), blurred);
+                           here.size(), spread_of(here, &camera::RaysAndPattern::contrast_error),
+                           blurred);
     };
     fmt::print("\nRMS < 0.1: {}\n", count([](const auto& w) { return w.rms_waves < 0.1; }));
     fmt::print("blur > 4:  {}\n", count([](const auto& w) { return w.blur > 4; }));
@@ -145,14 +150,15 @@ int main_of(int count, char** words) {
         fmt::print(stderr, "rays_and_pattern paraxial|traced [CYCLES]\n");
         return 2;
     }
-    for (const LensSummary& lens : list_lenses()) {
-        const Lens whole(load_lens(lens.name).lens);
-        const auto half_deg = field_half_deg(whole.prescription());
+    for (const io::LensSummary& lens : io::list_lenses()) {
+        const camera::Lens whole(io::load_lens(lens.name).lens);
+        const auto half_deg = camera::field_half_deg(whole.prescription());
         if (!half_deg) continue;
         Row row{fmt::format("| `{}` |", lens.name)};
         for (const double fnumber : kStops) {
             const auto bench =
-                set_up(whole, fnumber, by == "traced" ? FocusBy::Traced : FocusBy::Paraxial);
+                set_up(whole, fnumber,
+                       by == "traced" ? camera::FocusBy::Traced : camera::FocusBy::Paraxial);
             if (bench) measured.add(row, *bench, *half_deg);
             row.text += " |";
         }

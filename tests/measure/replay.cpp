@@ -55,7 +55,7 @@ double retrace_s(RTCScene scene, const std::vector<Ray>& nearest, const std::vec
         embree::Context of_embree = embree::new_context();
         const Ray* ray = nullptr;
     } context;
-    const double start_s = process_cpu_s();
+    const double start_s = io::process_cpu_s();
     for (const Ray& r : nearest) {
         context.ray = &r;
         RTCRayHit query;
@@ -68,25 +68,26 @@ double retrace_s(RTCScene scene, const std::vector<Ray>& nearest, const std::vec
         RTCRay query = bare(r);
         embree::occlude(scene, context.of_embree, query);
     }
-    return process_cpu_s() - start_s;
+    return io::process_cpu_s() - start_s;
 }
 
 template <class Tracer>
-std::pair<double, PathStats> timed(const Tracer& tracer, const RenderSetup& setup,
-                                   const RenderJob& job, V2i size) {
+std::pair<double, integrator::PathStats> timed(const Tracer& tracer, const apps::RenderSetup& setup,
+                                               const integrator::RenderJob& job, V2i size) {
     Film film(size, {0, 0, size.x, size.y}, {});
-    RenderMonitor monitor;
-    ThreadExecutor executor(1);
-    const double start_s = process_cpu_s();
-    const RenderResult result = render(tracer, *setup.view.camera, job, film, executor, monitor);
-    return {process_cpu_s() - start_s, result.stats};
+    integrator::RenderMonitor monitor;
+    integrator::ThreadExecutor executor(1);
+    const double start_s = io::process_cpu_s();
+    const integrator::RenderResult result =
+        integrator::render(tracer, *setup.view.camera, job, film, executor, monitor);
+    return {io::process_cpu_s() - start_s, result.stats};
 }
 
 int run(int argc, char** argv) {
     CLI::App app("Traversal floor of a render.");
-    SceneRequest request;
+    apps::SceneRequest request;
     std::string look_at, size = "640x480";
-    RenderJob job;
+    integrator::RenderJob job;
     job.end_sample = 4;
     app.add_option("scene", request.scene)->required();
     app.add_option("--look-at", look_at);
@@ -98,19 +99,19 @@ int run(int argc, char** argv) {
         ->transform(CLI::CheckedTransformer(std::map<std::string, Traversal>{
             {"robust", Traversal::Robust}, {"fast", Traversal::Fast}}));
     CLI11_PARSE(app, argc, argv);
-    request.size = parse_size("--size", size);
+    request.size = apps::parse_size("--size", size);
     if (!look_at.empty()) {
-        const auto v = parse_numbers("--look-at", look_at, 6);
+        const auto v = apps::parse_numbers("--look-at", look_at, 6);
         request.camera.look_at = {V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
     }
     flush_denormals();
-    const RenderSetup setup = set_up_render(request, [](const std::string&) {});
-    const PathOptions options;
-    const PathTracer<Bvh> tracer(*setup.prepared.scene, *setup.prepared.bvh, *setup.prepared.lights,
-                                 options);
+    const apps::RenderSetup setup = apps::set_up_render(request, [](const std::string&) {});
+    const integrator::PathOptions options;
+    const integrator::PathTracer<Bvh> tracer(*setup.prepared.scene, *setup.prepared.bvh,
+                                             *setup.prepared.lights, options);
     const Recorder recorder{*setup.prepared.bvh, {}, {}};
-    const PathTracer<Recorder> recording(*setup.prepared.scene, recorder, *setup.prepared.lights,
-                                         options);
+    const integrator::PathTracer<Recorder> recording(*setup.prepared.scene, recorder,
+                                                     *setup.prepared.lights, options);
     (void)timed(recording, setup, job, request.size);
 
     // Pairs, as the machine's speed drifts; the medians are printed.

@@ -30,7 +30,7 @@ ROADS = {
 }
 LONGEST = {"thin lens": (50, 5570), "Takumar": (71, 8697)}  # files, lines
 PRODUCT = re.compile(r"(?:.*/)?((?:core|camera|integrator|io|apps)/\S+)$")
-SAMPLING = "petzval::SampleBatch<petzval::PathTracer<petzval::Bvh, petzval::Unwatched> >::render()"
+SAMPLING = "petzval::integrator::SampleBatch<petzval::integrator::PathTracer<petzval::Bvh, petzval::integrator::Unwatched> >::render()"
 
 
 def skip(reason):

@@ -20,9 +20,9 @@ constexpr uint32_t kSeeds = 8;
 
 int run(int argc, char** argv) {
     CLI::App app("Cost and noise of wavelengths against RGB.");
-    SceneRequest request;
+    apps::SceneRequest request;
     std::string look_at, size = "240x160";
-    RenderJob job;
+    integrator::RenderJob job;
     job.end_sample = 16;
     app.add_option("scene", request.scene)->required();
     app.add_option("--look-at", look_at);
@@ -31,18 +31,18 @@ int run(int argc, char** argv) {
     app.add_option("--size", size);
     app.add_option("--spp", job.end_sample);
     CLI11_PARSE(app, argc, argv);
-    request.size = parse_size("--size", size);
+    request.size = apps::parse_size("--size", size);
     if (!look_at.empty()) {
-        const auto v = parse_numbers("--look-at", look_at, 6);
+        const auto v = apps::parse_numbers("--look-at", look_at, 6);
         request.camera.look_at = {V3f(v[0], v[1], v[2]), V3f(v[3], v[4], v[5])};
     }
     flush_denormals();
-    request.spectral.mode = SpectralMode::Wavelengths;
-    const RenderSetup setup = set_up_render(request, [](const std::string&) {});
-    const PathTracer<Bvh> tracer(*setup.prepared.scene, *setup.prepared.bvh, *setup.prepared.lights,
-                                 PathOptions());
+    request.spectral.mode = apps::SpectralMode::Wavelengths;
+    const apps::RenderSetup setup = apps::set_up_render(request, [](const std::string&) {});
+    const integrator::PathTracer<Bvh> tracer(*setup.prepared.scene, *setup.prepared.bvh,
+                                             *setup.prepared.lights, integrator::PathOptions());
 
-    std::array<RenderJob, 2> jobs{job, job};
+    std::array<integrator::RenderJob, 2> jobs{job, job};
     jobs[1].observer = setup.view.observer;
     std::array<std::vector<Film>, 2> films;
     std::vector<double> ratios;

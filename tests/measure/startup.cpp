@@ -84,24 +84,25 @@ std::vector<double> measured(int runs, const std::function<double()>& f) {
     return values;
 }
 
-SceneRequest request_for(const fs::path& scene, const std::string& lens) {
-    SceneRequest request;
+apps::SceneRequest request_for(const fs::path& scene, const std::string& lens) {
+    apps::SceneRequest request;
     request.scene = scene;
     request.camera.look_at = {V3f(0, 0, 10), V3f(0, 0, 0)};
-    request.camera.focus = FocusDistance{10};
+    request.camera.focus = apps::FocusDistance{10};
     request.camera.lens = lens;
     return request;
 }
 
 const auto kSilent = [](const std::string&) {};
 
-double first_ray_ms(const SceneRequest& request, double (*now_ms)() = thread_cpu_ms) {
+double first_ray_ms(const apps::SceneRequest& request, double (*now_ms)() = thread_cpu_ms) {
     return ms_of(
         [&] {
-            const RenderSetup setup = set_up_render(request, kSilent);
+            const apps::RenderSetup setup = apps::set_up_render(request, kSilent);
             const Sampler sampler(SamplerKind::Owen, 0, {0, 0, 0});
             const Bands bands = setup.view.observer.draw(0.5f);
-            const CameraSample seen = setup.view.still->sample({V2f(0.5f, 0.5f), sampler}, bands);
+            const camera::CameraSample seen =
+                setup.view.still->sample({V2f(0.5f, 0.5f), sampler}, bands);
             if (seen.size() > 0) static_cast<void>(setup.prepared.bvh->intersect(seen[0].ray));
         },
         now_ms);
@@ -109,31 +110,31 @@ double first_ray_ms(const SceneRequest& request, double (*now_ms)() = thread_cpu
 
 // The same without a lens: what is left of the difference, the lens's file taken off, is focus,
 // f-number, table and irradiance.
-double without_lens_ms(SceneRequest request) {
+double without_lens_ms(apps::SceneRequest request) {
     request.camera.lens.reset();
-    request.spectral.mode = SpectralMode::Wavelengths;
+    request.spectral.mode = apps::SpectralMode::Wavelengths;
     request.camera.fstop = 2;
     return first_ray_ms(request);
 }
 
 double table_ms(const std::string& name) {
-    const Lens lens(load_lens(name).lens);
+    const camera::Lens lens(io::load_lens(name).lens);
     const double reach_mm = std::min(lens.prescription().image_circle_mm / 2, 21.6);
-    return ms_of([&] { static_cast<void>(RayAimer(lens, lens.film_mm(), reach_mm)); });
+    return ms_of([&] { static_cast<void>(camera::RayAimer(lens, lens.film_mm(), reach_mm)); });
 }
 
 double tree_ms(const fs::path& scene) {
-    GltfFile file = load_gltf(scene);
+    io::GltfFile file = io::load_gltf(scene);
     finish_scene(file.scene);
     return ms_of([&] { static_cast<void>(Bvh(file.scene, Traversal::Robust)); });
 }
 
 double spectra_ms(const fs::path& scene) {
-    GltfFile file = load_gltf(scene);
-    SpectralRequest request;
-    request.mode = SpectralMode::Wavelengths;
+    io::GltfFile file = io::load_gltf(scene);
+    apps::SpectralRequest request;
+    request.mode = apps::SpectralMode::Wavelengths;
     return ms_of(
-        [&] { static_cast<void>(set_up_spectra(request, file.scene, "", false, kSilent)); });
+        [&] { static_cast<void>(apps::set_up_spectra(request, file.scene, "", false, kSilent)); });
 }
 
 int run(int runs) {
@@ -143,23 +144,23 @@ int run(int runs) {
     const auto least_ms = [&](const std::function<double()>& f) {
         return measured(runs, f).front();
     };
-    const auto lenses = list_lenses();
+    const auto lenses = io::list_lenses();
     const double bare_ms =
         least_ms([&] { return without_lens_ms(request_for(scene, lenses.front().name)); });
     fmt::print(
         "Milliseconds, least of {}. All lenses: scene {:.1f}, spectra {:.1f}, tree {:.1f}, "
         "catalogue of glasses {:.1f}\n\n",
-        runs, least_ms([&] { return ms_of([&] { static_cast<void>(load_gltf(scene)); }); }),
+        runs, least_ms([&] { return ms_of([&] { static_cast<void>(io::load_gltf(scene)); }); }),
         least_ms([&] { return spectra_ms(scene); }), least_ms([&] { return tree_ms(scene); }),
-        least_ms([] { return ms_of([] { static_cast<void>(glass_catalog()); }); }));
+        least_ms([] { return ms_of([] { static_cast<void>(io::glass_catalog()); }); }));
     fmt::print(
         "| lens | file | set-up | of which table | to the first ray | by the clock "
         "|\n|---|---|---|---|---|---|\n");
     bool kept = true;
-    for (const LensSummary& lens : lenses) {
-        const SceneRequest request = request_for(scene, lens.name);
+    for (const io::LensSummary& lens : lenses) {
+        const apps::SceneRequest request = request_for(scene, lens.name);
         const double file_ms =
-            least_ms([&] { return ms_of([&] { static_cast<void>(load_lens(lens.name)); }); });
+            least_ms([&] { return ms_of([&] { static_cast<void>(io::load_lens(lens.name)); }); });
         const double filled_ms = least_ms([&] { return table_ms(lens.name); });
         const double all_ms = least_ms([&] { return first_ray_ms(request); });
         std::vector<double> by_clock_ms =

@@ -32,7 +32,7 @@ constexpr int kTableSmall = 32, kTableLarge = 64;
 class Eye {
   public:
     explicit Eye(const SpectrumTable& light) {
-        const Curves bar = standard_observer();
+        const Curves bar = io::standard_observer();
         const double scale = 1 / integral_of_product(bar[1], light);
         for (size_t k = 0; k < 3; ++k) {
             for (size_t i = 0; i < kSpectrumSize; ++i)
@@ -252,9 +252,9 @@ void tell_of_patches(const Model& model, const Lights& lights) {
         fmt::print("\n");
     };
     std::vector<double> sums(9), worst(9);
-    const std::vector<std::string> names = reflectance_names();
+    const std::vector<std::string> names = io::reflectance_names();
     for (const std::string& name : names) {
-        const SpectrumTable patch = find_reflectance(name)->share;
+        const SpectrumTable patch = io::find_reflectance(name)->share;
         const SpectrumTable got = model.uplift(clipped(lights.d65.rgb(patch)));
         std::vector<double> row{rms(got, patch, kWide_nm.first, kWide_nm.second)};
         for (const Eye* eye : {&lights.a, &lights.f11})
@@ -279,7 +279,7 @@ void compare_with_nature(const std::vector<Model>& models, const Lights& lights)
     Differences::print_head();
     for (const Model& model : models) {
         Differences off;
-        for (const SpectrumTable& patch : training_reflectances()) {
+        for (const SpectrumTable& patch : io::training_reflectances()) {
             off.add(model.uplift(clipped(lights.d65.rgb(patch))), patch, lights);
         }
         off.print(model.name);
@@ -407,12 +407,12 @@ void compare_speed(const Observer& observer, const SigmoidTable& small, const Si
 }
 
 void run() {
-    const SpectrumTable white = find_illuminant("d65");
-    const Lights lights{Eye(white), Eye(find_illuminant("a")), Eye(find_illuminant("f11"))};
+    const SpectrumTable white = io::find_illuminant("d65");
+    const Lights lights{Eye(white), Eye(io::find_illuminant("a")), Eye(io::find_illuminant("f11"))};
     const Observer observer = test::observer_of({});
     const std::vector<Bands> bands = every_nm(observer);
 
-    const SigmoidFit fit(standard_observer(), white);
+    const SigmoidFit fit(io::standard_observer(), white);
     const SigmoidTable small(kTableSmall, fit), large(kTableLarge, fit);
     const auto basis = [&](Rgb c) {
         return spectrum(bands, [&](const Bands& b) { return uplift_reflectance(c, b); });

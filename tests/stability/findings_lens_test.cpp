@@ -88,7 +88,7 @@ TEST_F(Findings, ChoiceByWeight) {
 
 TEST_F(Findings, PupilAtWideFields) {
     take(pupil_at_wide_fields());
-    EXPECT_EQ(rows(), list_lenses().size());
+    EXPECT_EQ(rows(), io::list_lenses().size());
     struct Row {
         std::string lens, no_ray, traces, off, folded, heaviest, first;
     };

@@ -19,9 +19,9 @@ int main(int count, char** words) {
         const std::filesystem::path page = words[2];
         std::filesystem::create_directories(page.parent_path());
         const std::vector<Finding> findings = stability_findings();
-        write_file_atomically(std::filesystem::path(page).replace_extension(".csv"),
-                              stability_csv(findings));
-        write_file_atomically(page, stability_markdown(findings, guards));
+        io::write_file_atomically(std::filesystem::path(page).replace_extension(".csv"),
+                                  stability_csv(findings));
+        io::write_file_atomically(page, stability_markdown(findings, guards));
     } catch (const std::exception& error) {
         std::fprintf(stderr, "make_stability_page: %s\n", error.what());
         return 1;

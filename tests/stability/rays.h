@@ -14,9 +14,9 @@ inline constexpr double kGlassIndex = 1.5;
 inline constexpr double kBehind_mm = 50;  ///< of the plane on which rays are compared
 
 /// Of no conic, and glass of kGlassIndex behind it where there is some.
-[[nodiscard]] inline LensSurface surface(double curvature_1_mm, double semi_mm, double thickness_mm,
-                                         bool glass) {
-    LensSurface s;
+[[nodiscard]] inline camera::LensSurface surface(double curvature_1_mm, double semi_mm,
+                                                 double thickness_mm, bool glass) {
+    camera::LensSurface s;
     s.curvature_1_mm = curvature_1_mm;
     s.semi_diameter_mm = semi_mm;
     s.thickness_mm = thickness_mm;
@@ -25,21 +25,21 @@ inline constexpr double kBehind_mm = 50;  ///< of the plane on which rays are co
 }
 
 /// With a stop behind all of it, through which everything passes.
-[[nodiscard]] inline Lens lens_of(std::vector<LensSurface> surfaces) {
+[[nodiscard]] inline camera::Lens lens_of(std::vector<camera::LensSurface> surfaces) {
     surfaces.push_back(surface(0, 1e6, kBehind_mm, surfaces.back().glass.has_value()));
     surfaces.back().stop = true;
-    Prescription p;
+    camera::Prescription p;
     p.surfaces = std::move(surfaces);
-    return Lens(std::move(p));
+    return camera::Lens(std::move(p));
 }
 
 /// One ray in four equal lanes.
 template <class V>
-[[nodiscard]] LensRay<V> ray_from(const V3d& origin_mm, const V3d& direction) {
-    using S = ScalarOf<V>;
-    const auto all = [](double a) { return broadcast<V>(static_cast<S>(a)); };
+[[nodiscard]] camera::LensRay<V> ray_from(const V3d& origin_mm, const V3d& direction) {
+    using S = camera::ScalarOf<V>;
+    const auto all = [](double a) { return camera::broadcast<V>(static_cast<S>(a)); };
     const V3d d = direction / direction.length();
-    LensRay<V> ray;
+    camera::LensRay<V> ray;
     ray.origin = {all(origin_mm.x), all(origin_mm.y), all(origin_mm.z)};
     ray.direction = {all(d.x), all(d.y), all(d.z)};
     return ray;
@@ -47,15 +47,15 @@ template <class V>
 
 /// A ray traced in floats and in doubles.
 struct Pair {
-    LensRay<f4> in_floats;
-    LensRay<d4> in_doubles;
+    camera::LensRay<f4> in_floats;
+    camera::LensRay<d4> in_doubles;
 
     [[nodiscard]] bool statuses_differ() const {
         return in_floats.status(0) != in_doubles.status(0);
     }
     [[nodiscard]] bool passed() const {
-        return in_floats.status(0) == RayStatus::Passed &&
-               in_doubles.status(0) == RayStatus::Passed;
+        return in_floats.status(0) == camera::RayStatus::Passed &&
+               in_doubles.status(0) == camera::RayStatus::Passed;
     }
     /// Of the crossing with a plane so far behind the vertex of the last surface that was met.
     [[nodiscard]] double apart_mm(double behind_mm) const {
@@ -69,18 +69,19 @@ struct Pair {
 };
 
 /// Both from the same origin and direction, as floats have them.
-[[nodiscard]] inline Pair trace_both(const Lens& lens, SurfaceRange range, const V3d& origin_mm,
-                                     const V3d& direction) {
-    const LensRay<f4> start = ray_from<f4>(origin_mm, direction);
-    const auto lane_0 = [](const Vec3<f4>& a) {
+[[nodiscard]] inline Pair trace_both(const camera::Lens& lens, camera::SurfaceRange range,
+                                     const V3d& origin_mm, const V3d& direction) {
+    const camera::LensRay<f4> start = ray_from<f4>(origin_mm, direction);
+    const auto lane_0 = [](const camera::Vec3<f4>& a) {
         return V3d(double(a.x[0]), double(a.y[0]), double(a.z[0]));
     };
     Pair out{start, ray_from<d4>(lane_0(start.origin), lane_0(start.direction))};
     const float nm = static_cast<float>(kLineD_nm);
-    static_cast<void>(trace_lens<f4>({lens, Towards::Film, range, Clip::No},
-                                     lens.exact_indices(splat(nm)), out.in_floats));
-    static_cast<void>(trace_lens<d4>({lens, Towards::Film, range, Clip::No},
-                                     lens.exact_indices(broadcast<d4>(kLineD_nm)), out.in_doubles));
+    static_cast<void>(camera::trace_lens<f4>({lens, camera::Towards::Film, range, camera::Clip::No},
+                                             lens.exact_indices(splat(nm)), out.in_floats));
+    static_cast<void>(camera::trace_lens<d4>({lens, camera::Towards::Film, range, camera::Clip::No},
+                                             lens.exact_indices(camera::broadcast<d4>(kLineD_nm)),
+                                             out.in_doubles));
     return out;
 }
 

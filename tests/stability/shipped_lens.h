@@ -8,25 +8,26 @@ namespace petzval::stability {
 
 /// A lens that ships, wide open and in focus as it ships.
 struct ShippedLens {
-    std::shared_ptr<const Lens> lens;
+    std::shared_ptr<const camera::Lens> lens;
     double stop_mm, half_circle_mm;
 
     explicit ShippedLens(const std::string& name) {
-        Prescription p = load_lens(name).lens;
+        camera::Prescription p = io::load_lens(name).lens;
         half_circle_mm = 0.5 * (p.image_circle_mm > 0 ? p.image_circle_mm : 43.27);
-        lens = std::make_shared<const Lens>(std::move(p));
+        lens = std::make_shared<const camera::Lens>(std::move(p));
         stop_mm = lens->prescription().surfaces[static_cast<size_t>(lens->stop())].semi_diameter_mm;
     }
     /// Camera at the origin with a film of that size.
-    [[nodiscard]] LensCamera camera(double width_mm, double height_mm) const {
-        return LensCamera(input(width_mm, height_mm));
+    [[nodiscard]] camera::LensCamera camera(double width_mm, double height_mm) const {
+        return camera::LensCamera(input(width_mm, height_mm));
     }
-    [[nodiscard]] LensCameraInput input(double width_mm, double height_mm) const {
-        LensCameraInput in{.lens = lens, .iris = Iris(Disk{}, stop_mm), .to_world = M44f()};
+    [[nodiscard]] camera::LensCameraInput input(double width_mm, double height_mm) const {
+        camera::LensCameraInput in{
+            .lens = lens, .iris = camera::Iris(camera::Disk{}, stop_mm), .to_world = M44f()};
         in.film_mm = lens->film_mm();
         in.film_width_mm = width_mm;
         in.film_height_mm = height_mm;
-        in.dispersion = DispersionMode::Shared;
+        in.dispersion = camera::DispersionMode::Shared;
         return in;
     }
 };

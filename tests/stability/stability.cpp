@@ -70,12 +70,13 @@ std::vector<Finding> stability_findings() {
 }
 
 Guards read_guards(const std::string& file) {
-    const CsvText table = read_csv_text(file);
+    const io::CsvText table = io::read_csv_text(file);
     Guards guards;
     for (size_t i = 0; i < table.rows.size(); ++i) {
         std::istringstream names(table.rows[i].at(1));
         auto [row, is_new] = guards.try_emplace(table.rows[i].at(0));
-        if (!is_new) throw InputError(file, table.place(i), "has a finding for the second time");
+        if (!is_new)
+            throw io::InputError(file, table.place(i), "has a finding for the second time");
         for (std::string name; names >> name;) row->second.push_back(name);
     }
     return guards;

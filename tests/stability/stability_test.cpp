@@ -63,8 +63,9 @@ TEST(Stability, RaysOfAThinLensMeetAtTenfoldMagnification) {
     M44f pose;
     pose[3][0] = pose[3][1] = pose[3][2] = 1;
     const auto focus_m = static_cast<float>(focus_mm * 1e-3);
-    const ThinLensCamera camera({pose, static_cast<float>(2 * std::atan(12 / film_mm)), 1.5f,
-                                 Iris(Disk{}, focal_mm / 4), focus_m});
+    const camera::ThinLensCamera camera({pose, static_cast<float>(2 * std::atan(12 / film_mm)),
+                                         1.5f, camera::Iris(camera::Disk{}, focal_mm / 4),
+                                         focus_m});
     std::optional<V3d> first;
     for (uint32_t i = 0; i < 1000; ++i) {
         const Sampler sampler(SamplerKind::Owen, 3, {0, 0, i});
@@ -78,10 +79,10 @@ TEST(Stability, RaysOfAThinLensMeetAtTenfoldMagnification) {
 
 TEST(Stability, ASliverOfAThousandthLosesNothing) {
     const double c = std::sqrt(0.5), x = 0.5, y = 0.0005;
-    Polygon sliver{{{{-x, -y}, {x, -y}, {x, y}, {-x, y}}}};
-    for (V2d& p : sliver.contours[0]) p = {c * (p.x - p.y), c * (p.x + p.y)};
-    for (const IrisSampling way : iris_samplings(sliver)) {
-        const Iris iris(sliver, 10, ApertureScale::Inscribed, way);
+    camera::Polygon sliver{{{{-x, -y}, {x, -y}, {x, y}, {-x, y}}}};
+    for (camera::V2d& p : sliver.contours[0]) p = {c * (p.x - p.y), c * (p.x + p.y)};
+    for (const camera::IrisSampling way : camera::iris_samplings(sliver)) {
+        const camera::Iris iris(sliver, 10, camera::ApertureScale::Inscribed, way);
         int refused = 0;
         test::Random random(3);
         for (int i = 0; i < 10000; ++i) refused += iris.transmits(iris.sample(random.next2())) == 0;
@@ -93,24 +94,25 @@ TEST(Stability, NearlyDegeneratePolygonsKeepTheirArea) {
     for (const double d : {1e-3, 1e-6, 1e-9}) {
         // A vertex off a straight edge, and a slot of width d that is 1.5 deep; turned, so that no
         // edge is level.
-        const auto turned = [](std::vector<V2d> contour) {
-            for (V2d& p : contour) p = {0.8 * p.x - 0.6 * p.y, 0.6 * p.x + 0.8 * p.y};
-            return Polygon{{std::move(contour)}};
+        const auto turned = [](std::vector<camera::V2d> contour) {
+            for (camera::V2d& p : contour) p = {0.8 * p.x - 0.6 * p.y, 0.6 * p.x + 0.8 * p.y};
+            return camera::Polygon{{std::move(contour)}};
         };
-        const Polygon dented = turned({{-1, -1}, {0, -1 - d}, {1, -1}, {1, 1}, {-1, 1}});
-        const Polygon slotted = turned({{-1, -1},
-                                        {1, -1},
-                                        {1, -d / 2},
-                                        {-0.5, -d / 2},
-                                        {-0.5, d / 2},
-                                        {1, d / 2},
-                                        {1, 1},
-                                        {-1, 1}});
+        const camera::Polygon dented = turned({{-1, -1}, {0, -1 - d}, {1, -1}, {1, 1}, {-1, 1}});
+        const camera::Polygon slotted = turned({{-1, -1},
+                                                {1, -1},
+                                                {1, -d / 2},
+                                                {-0.5, -d / 2},
+                                                {-0.5, d / 2},
+                                                {1, d / 2},
+                                                {1, 1},
+                                                {-1, 1}});
         for (const auto& [polygon, area] : {std::pair{dented, 4 + d}, {slotted, 4 - 1.5 * d}}) {
-            ASSERT_FALSE(find_fault(polygon)) << d;
+            ASSERT_FALSE(camera::find_fault(polygon)) << d;
             double reach2 = 0;
-            for (const V2d& p : polygon.contours[0]) reach2 = std::max(reach2, p.length2());
-            const Iris iris(polygon, 10, ApertureScale::Inscribed, IrisSampling::Triangles);
+            for (const camera::V2d& p : polygon.contours[0]) reach2 = std::max(reach2, p.length2());
+            const camera::Iris iris(polygon, 10, camera::ApertureScale::Inscribed,
+                                    camera::IrisSampling::Triangles);
             EXPECT_NEAR(iris.area_mm2() / (area * 100 / reach2), 1, 1e-9) << d;
         }
     }
@@ -119,12 +121,14 @@ TEST(Stability, NearlyDegeneratePolygonsKeepTheirArea) {
 // Past a fold of the pupil the map from directions to the stop turns back: next to it a ray that
 // only nearly meets a point of the stop may have any weight. One of 12,600 times the mean was seen.
 TEST(Stability, NoDrawOutweighsAllOthersWhereThePupilFolds) {
-    const auto lens = std::make_shared<const Lens>(load_lens("primoplan-58mm-f1.5").lens);
+    const auto lens =
+        std::make_shared<const camera::Lens>(io::load_lens("primoplan-58mm-f1.5").lens);
     const double radius_mm = lens->prescription().surfaces[size_t(lens->stop())].semi_diameter_mm;
-    LensCameraInput in{.lens = lens, .iris = Iris(Disk{}, radius_mm), .to_world = M44f()};
+    camera::LensCameraInput in{
+        .lens = lens, .iris = camera::Iris(camera::Disk{}, radius_mm), .to_world = M44f()};
     in.film_mm = lens->film_mm();
-    in.dispersion = DispersionMode::Shared;
-    const LensCamera camera(in);
+    in.dispersion = camera::DispersionMode::Shared;
+    const camera::LensCamera camera(in);
     test::Moments weights;
     double heaviest = 0;
     test::Random random(4);
@@ -146,10 +150,10 @@ TEST(Stability, APictureAHundredMetresFromTheOriginIsSharp) {
     const double depth = double(eye.z) - double(world.scene.meshes[0].positions[0].z);
     M44f pose;
     for (int i = 0; i < 3; ++i) pose[3][i] = eye[i];
-    const ThinLensCamera camera({pose, 0.47f, 1.5f, {}, 1.f});
+    const camera::ThinLensCamera camera({pose, 0.47f, 1.5f, {}, 1.f});
     test::Random random(2);
     for (int i = 0; i < 2000; ++i) {
-        const FilmPoint at{random.next2(), Sampler(SamplerKind::Owen, 1, {0, 0, 0})};
+        const camera::FilmPoint at{random.next2(), Sampler(SamplerKind::Owen, 1, {0, 0, 0})};
         const Ray ray = camera.sample(at, Bands::rgb())[0].ray;
         const auto hit = world.bvh->intersect(ray);
         ASSERT_TRUE(hit);
@@ -196,9 +200,11 @@ TEST(Stability, ADefocusedHighlightVariesAsItsShareOfTheBlur) {
     world.place(quad(V3f(-side_m / 2, -side_m / 2, -10), V3f(side_m, 0, 0), V3f(0, side_m, 0)),
                 lamp);
     world.finish();
-    const ThinLensCamera camera({M44f(), 0.47f, 1.5f, Iris(Disk{}, 12.5), 1.f});
-    const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
-    PathStats stats;
+    const camera::ThinLensCamera camera(
+        {M44f(), 0.47f, 1.5f, camera::Iris(camera::Disk{}, 12.5), 1.f});
+    const integrator::PathTracer tracer(world.scene, *world.bvh, *world.lights,
+                                        integrator::PathOptions());
+    integrator::PathStats stats;
     test::Moments light;
     for (uint32_t i = 0; i < 200000; ++i) {
         const Sampler sampler(SamplerKind::Independent, 9, {0, 0, i});
@@ -223,10 +229,10 @@ TEST(Stability, PanesLoseWhatTheDepthCutsOff) {
         }
         world.scene.sky = Sky::uniform(Rgb(1.f));
         world.finish();
-        PathOptions options;
+        integrator::PathOptions options;
         options.max_specular_depth = depth;
-        const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
-        PathStats stats;
+        const integrator::PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
+        integrator::PathStats stats;
         test::Moments light;
         for (uint32_t i = 0; i < 40000; ++i) {
             Ray ray;

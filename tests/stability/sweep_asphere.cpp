@@ -18,22 +18,23 @@ struct Newton {
            other = 0;  ///< shares: a surface that is there, a root that is not the first
 };
 
-LensSurface scaled_asphere(LensSurface s, double factor) {
+camera::LensSurface scaled_asphere(camera::LensSurface s, double factor) {
     for (auto& term : s.asphere) term[1] *= factor;
     s.thickness_mm = 1;
     s.stop = false;
     return s;
 }
 
-Newton newton_on(const LensSurface& s) {
-    std::vector<LensSurface> one{s};
+Newton newton_on(const camera::LensSurface& s) {
+    std::vector<camera::LensSurface> one{s};
     one[0].glass = Glass{"n", IndexSeries{{{kGlassIndex, 0}}}};
-    const Lens lens = lens_of(one);
+    const camera::Lens lens = lens_of(one);
     const double semi_mm = s.semi_diameter_mm;
     constexpr int kHeights = 16, kSteps = 400;
     double deepest_mm = 0;
     for (int i = 0; i <= 100; ++i)
-        deepest_mm = std::fmax(deepest_mm, std::fabs(sag_mm(s, semi_mm * i / 100, Section::Y)));
+        deepest_mm = std::fmax(deepest_mm,
+                               std::fabs(camera::sag_mm(s, semi_mm * i / 100, camera::Section::Y)));
     const double reach_mm = 1.1 * deepest_mm + 0.5 * semi_mm;
     Newton out;
     int rays = 0;
@@ -44,7 +45,7 @@ Newton newton_on(const LensSurface& s) {
             // Below the surface before it is met, as light comes; t = 0 at the vertex's plane.
             const auto above = [&](double t) {
                 const V3d p = aim + d * t;
-                return p.z - sag_mm(s, p.y, Section::Y);
+                return p.z - camera::sag_mm(s, p.y, camera::Section::Y);
             };
             std::optional<double> root;
             for (int k = 0; k < kSteps && !root; ++k) {
@@ -59,9 +60,9 @@ Newton newton_on(const LensSurface& s) {
             if (!root) continue;
             ++rays;
             const Pair pair = trace_both(lens, {0, 0}, aim - d * semi_mm, d);
-            const auto judge = [&](RayStatus status, double y) {
-                out.missed += status == RayStatus::Missed;
-                out.other += status == RayStatus::Passed &&
+            const auto judge = [&](camera::RayStatus status, double y) {
+                out.missed += status == camera::RayStatus::Missed;
+                out.other += status == camera::RayStatus::Passed &&
                              std::fabs(y - (aim + d * *root).y) > 1e-3 * semi_mm;
             };
             judge(pair.in_floats.status(0), double(pair.in_floats.origin.y[0]));
@@ -85,17 +86,17 @@ Finding newton_on_strong_aspheres() {
                        "a miss from", "10 % miss from", "another point from"};
     double least = HUGE_VAL, least_share = 0;
     std::string least_name;
-    for (const LensSummary& summary : list_lenses()) {
-        const Prescription lens = load_lens(summary.name).lens;
+    for (const io::LensSummary& summary : io::list_lenses()) {
+        const camera::Prescription lens = io::load_lens(summary.name).lens;
         for (size_t i = 0; i < lens.surfaces.size(); ++i) {
-            const LensSurface& s = lens.surfaces[i];
+            const camera::LensSurface& s = lens.surfaces[i];
             if (s.asphere.empty()) continue;
-            LensSurface bare = s;
+            camera::LensSurface bare = s;
             bare.asphere.clear();
             const double semi_mm = s.semi_diameter_mm;
-            const double departure =
-                std::fabs(sag_mm(s, semi_mm, Section::Y) - sag_mm(bare, semi_mm, Section::Y)) /
-                semi_mm;
+            const double departure = std::fabs(camera::sag_mm(s, semi_mm, camera::Section::Y) -
+                                               camera::sag_mm(bare, semi_mm, camera::Section::Y)) /
+                                     semi_mm;
             const auto from = [&](auto fails) {
                 return first_failure(
                     1, 1e4,

@@ -57,7 +57,7 @@ Finding stacks_of_cards() {
         "ray from above sees, over the closed form; the variance of a sample, relative; the rays "
         "that a sample casts for what it sees, and for the sun. 4096 samples.";
     f.table.columns = {"cards", "coverage", "seen / closed form", "variance", "rays", "to the sun"};
-    PathOptions options;
+    integrator::PathOptions options;
     options.max_depth = 1;
     double weighed = 0, drawn = 0, most_rays = 0;
     for (const int count : {1, 2, 4, 8, 9, 16, 32, 100, 1000}) {

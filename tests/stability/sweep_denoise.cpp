@@ -27,7 +27,7 @@ struct Denoisings {
 Denoisings denoisings_of(const Light& light, const std::function<double(int x)>& truth) {
     Denoisings out;
     out.columns.resize(kSide_px);
-    TbbExecutor executor(1);
+    integrator::TbbExecutor executor(1);
     constexpr double kPixels = double(kSide_px) * kSide_px;
     for (uint32_t seed = 0; seed < kPictures; ++seed) {
         Film film({kSide_px, kSide_px}, {0, 0, kSide_px, kSide_px}, {}, {}, {.halves = true});
@@ -39,7 +39,7 @@ Denoisings denoisings_of(const Light& light, const std::function<double(int x)>&
                     sample.colour = Rgb(light(x, draws.next2()));
                     film.add(x, y, i, sample);
                 }
-        const auto denoised = denoised_film(film, executor, false);
+        const auto denoised = apps::denoised_film(film, executor, false);
         double noisy = 0, squares = 0, scale = 0;
         for (int y = 0; y < kSide_px; ++y)
             for (int x = 0; x < kSide_px; ++x) {
@@ -53,7 +53,7 @@ Denoisings denoisings_of(const Light& light, const std::function<double(int x)>&
         // The mean over 7 x 7 pixels is about that of the picture.
         scale = scale * scale + denoised->floor_nits * denoised->floor_nits;
         const double error = scale > 0 ? std::sqrt(squares / scale) : HUGE_VAL;
-        const DenoisedError& said = denoised->error;
+        const apps::DenoisedError& said = denoised->error;
         out.held += double(error >= said.least() && error <= said.most()) / kPictures;
         out.noisy += noisy / kPictures;
         out.denoised += squares / kPictures;

@@ -57,7 +57,7 @@ Finding dispersion_out_of_range() {
     f.table.columns = {
         "formula", "glasses",           "not a number",      "below 1",
         "jumps",   "breaks below (nm)", "breaks above (nm)", "as used: any of these"};
-    const std::vector<Glass> catalogue = glass_catalog();
+    const std::vector<Glass> catalogue = io::glass_catalog();
     double blue_nm = 0, red_nm = HUGE_VAL;
     size_t broken = 0, broken_as_used = 0;
     std::string used_name;
@@ -118,7 +118,7 @@ Finding dispersion_out_of_range() {
     f.instead = fmt::format(
         "Out of its range a glass keeps the index of the range's end. A catalogue whose formula "
         "breaks between 360 and 830 nm is refused: \"{}\".",
-        refusal_of([&] { static_cast<void>(AgfCatalog(pole, "maker.agf").find("POLE")); }));
+        refusal_of([&] { static_cast<void>(io::AgfCatalog(pole, "maker.agf").find("POLE")); }));
     return f;
 }
 

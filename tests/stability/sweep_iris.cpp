@@ -15,15 +15,15 @@ namespace {
 
 constexpr double kStop_mm = 10;
 
-Polygon turned(Polygon polygon, double rad) {
+camera::Polygon turned(camera::Polygon polygon, double rad) {
     const double c = std::cos(rad), s = std::sin(rad);
     for (auto& contour : polygon.contours)
-        for (V2d& p : contour) p = {p.x * c - p.y * s, p.x * s + p.y * c};
+        for (camera::V2d& p : contour) p = {p.x * c - p.y * s, p.x * s + p.y * c};
     return polygon;
 }
 
 // A rectangle 1 long along the diagonal, where its bounding box is emptiest.
-Polygon sliver(double ratio) {
+camera::Polygon sliver(double ratio) {
     const double x = 0.5, y = 0.5 / ratio;
     return turned({{{{-x, -y}, {x, -y}, {x, y}, {-x, y}}}}, std::numbers::pi / 4);
 }
@@ -33,14 +33,14 @@ struct Rejection {
 };
 
 // As Iris draws: points of the bounding box, 256 of them at most.
-Rejection rejection_of(const Iris& iris, double half_mm) {
+Rejection rejection_of(const camera::Iris& iris, double half_mm) {
     constexpr int kPoints = 2000;
     Draws draws(3);
     Rejection out;
     for (int i = 0; i < kPoints; ++i) {
         int tries = 0;
         bool inside = false;
-        while (!inside && tries < Iris::kTries) {
+        while (!inside && tries < camera::Iris::kTries) {
             ++tries;
             const V2f u = draws.next2();
             inside = iris.transmits((u * 2.f - V2f(1.f)) * static_cast<float>(half_mm)) > 0;
@@ -52,7 +52,7 @@ Rejection rejection_of(const Iris& iris, double half_mm) {
 }
 
 // Share of the points that an iris draws and then calls outside.
-double share_refused(const Iris& iris) {
+double share_refused(const camera::Iris& iris) {
     constexpr uint32_t kPoints = 8192;
     uint32_t refused = 0;
     for (uint32_t i = 0; i < kPoints; ++i)
@@ -61,8 +61,9 @@ double share_refused(const Iris& iris) {
     return double(refused) / kPoints;
 }
 
-Iris iris_of(const Polygon& polygon, IrisSampling way = IrisSampling::Triangles) {
-    return {polygon, kStop_mm, ApertureScale::Inscribed, way};
+camera::Iris iris_of(const camera::Polygon& polygon,
+                     camera::IrisSampling way = camera::IrisSampling::Triangles) {
+    return {polygon, kStop_mm, camera::ApertureScale::Inscribed, way};
 }
 
 }  // namespace
@@ -74,7 +75,7 @@ Finding rejection_of_slivers() {
         "the box that are tried for each one inside, of {} that there may be at most; the share of "
         "draws that give up; and, however a point is drawn, the share of drawn points that the "
         "inside test, which rounds to floats, puts outside: a camera with glass loses their light.",
-        kStop_mm, Iris::kTries);
+        kStop_mm, camera::Iris::kTries);
     f.table.columns = {"N", "tries per point", "give up", "drawn but called outside"};
     const auto half_mm = [](double ratio) {
         return kStop_mm * (1 + 1 / ratio) / std::sqrt(2 * (1 + 1 / (ratio * ratio)));
@@ -102,15 +103,15 @@ Finding rejection_of_slivers() {
 
 namespace {
 
-double cross(const V2d& a, const V2d& b) {
+double cross(const camera::V2d& a, const camera::V2d& b) {
     return a.x * b.y - a.y * b.x;
 }
 
-double exact_area(const Polygon& polygon) {
+double exact_area(const camera::Polygon& polygon) {
     long double twice = 0;
     for (const auto& c : polygon.contours)
         for (size_t i = 0; i < c.size(); ++i) {
-            const V2d &a = c[i], &b = c[(i + 1) % c.size()], &o = c[0];
+            const camera::V2d &a = c[i], &b = c[(i + 1) % c.size()], &o = c[0];
             twice += (static_cast<long double>(a.x) - o.x) * (static_cast<long double>(b.y) - o.y) -
                      (static_cast<long double>(a.y) - o.y) * (static_cast<long double>(b.x) - o.x);
         }
@@ -118,11 +119,11 @@ double exact_area(const Polygon& polygon) {
 }
 
 // How far a point lies outside a contour: 0 within, by the parity of crossings.
-double distance_outside(const std::vector<V2d>& contour, const V2d& p) {
+double distance_outside(const std::vector<camera::V2d>& contour, const camera::V2d& p) {
     bool inside = false;
     double least = HUGE_VAL;
     for (size_t i = 0; i < contour.size(); ++i) {
-        const V2d &a = contour[i], &b = contour[(i + 1) % contour.size()], along = b - a;
+        const camera::V2d &a = contour[i], &b = contour[(i + 1) % contour.size()], along = b - a;
         if ((a.y > p.y) != (b.y > p.y) && (cross(along, p - a) > 0) == (b.y > a.y))
             inside = !inside;
         const double t = std::clamp((p - a).dot(along) / along.dot(along), 0.0, 1.0);
@@ -133,15 +134,15 @@ double distance_outside(const std::vector<V2d>& contour, const V2d& p) {
 
 struct Family {
     const char* name;
-    Polygon (*of)(double delta);
+    camera::Polygon (*of)(double delta);
 };
 
 // A vertex that stands delta off the straight edge of a square.
-Polygon nearly_collinear(double delta) {
+camera::Polygon nearly_collinear(double delta) {
     return turned({{{{-1, -1}, {0, -1 - delta}, {1, -1}, {1, 1}, {-1, 1}}}}, 0.3);
 }
 // A square with a slot whose two long edges are delta apart.
-Polygon nearly_touching(double delta) {
+camera::Polygon nearly_touching(double delta) {
     return turned({{{{-1, -1},
                      {1, -1},
                      {1, -delta / 2},
@@ -152,12 +153,12 @@ Polygon nearly_touching(double delta) {
                      {-1, 1}}}},
                   0.3);
 }
-Polygon needle(double delta) {
+camera::Polygon needle(double delta) {
     return turned({{{{-1, 0}, {1, 0}, {0.2, delta}}}}, 0.3);
 }
 // A comb whose teeth end on levels that are delta apart.
-Polygon nearly_level(double delta) {
-    Polygon comb{{{{1, -1}}}};
+camera::Polygon nearly_level(double delta) {
+    camera::Polygon comb{{{{1, -1}}}};
     for (int i = 0; i < 16; ++i) {
         const double x = 1 - i / 8.0;
         comb.contours[0].push_back({x, 0.5 + delta * ((i * 7) % 16)});
@@ -172,21 +173,21 @@ struct Quality {
     double area_error = 0, called_outside = 0, stray = 0;
 };
 
-Quality quality_of(const Polygon& polygon) {
+Quality quality_of(const camera::Polygon& polygon) {
     Quality out;
-    if (find_fault(polygon)) return {.refused = true};
+    if (camera::find_fault(polygon)) return {.refused = true};
     if (refusal_of([&] { static_cast<void>(iris_of(polygon)); }) != "accepted")
         return {.refused = true};
     double reach = 0;
-    for (const V2d& p : polygon.contours[0]) reach = std::fmax(reach, p.length());
+    for (const camera::V2d& p : polygon.contours[0]) reach = std::fmax(reach, p.length());
     const double mm = kStop_mm / reach;
-    const Iris iris = iris_of(polygon);
+    const camera::Iris iris = iris_of(polygon);
     out.area_error = std::fabs(iris.area_mm2() / (exact_area(polygon) * mm * mm) - 1);
     out.called_outside = share_refused(iris);
     constexpr uint32_t kPoints = 4096;
     for (uint32_t i = 0; i < kPoints; ++i) {
         const V2f p = iris.sample(Sampler(SamplerKind::Owen, 5, {0, 0, i}).get2(Dim::Lens));
-        const double off = distance_outside(polygon.contours[0], V2d(p.x, p.y) * (1 / mm));
+        const double off = distance_outside(polygon.contours[0], camera::V2d(p.x, p.y) * (1 / mm));
         out.stray += double(!(off <= 1e-6)) / kPoints;
     }
     return out;
@@ -230,7 +231,8 @@ Finding degenerate_polygons() {
                     lost_by, number(worst_lost), refused_by, number(worst_refused),
                     stray ? "Points leave the polygon where the table says so"
                           : "No drawn point leaves the polygon by more than 1e-6 of its size");
-    const auto fault = find_fault(Polygon{{{{-1, -1}, {1, -1}, {1, 1}, {0, -1}, {-1, 1}}}});
+    const auto fault =
+        camera::find_fault(camera::Polygon{{{{-1, -1}, {1, -1}, {1, 1}, {0, -1}, {-1, 1}}}});
     f.instead = fmt::format(
         "Areas and triangles are made in doubles. What touches or encloses nothing is refused "
         "(\"{}\").",

@@ -27,8 +27,8 @@ void place_floor(World& world) {
     world.place(quad(V3f(-50, 0, 50), V3f(100, 0, 0), V3f(0, 0, -100)), diffuse(0.5f));
 }
 
-Measured lit(const World& world, Technique technique, int max_depth = 1) {
-    PathOptions options;
+Measured lit(const World& world, integrator::Technique technique, int max_depth = 1) {
+    integrator::PathOptions options;
     options.max_depth = max_depth;
     options.technique = technique;
     return measure(world, options, kLightSamples, straight_down);
@@ -86,10 +86,10 @@ Finding tiny_sun() {
     std::optional<double> blind;
     for (const int width : {16, 64, 256, 512, 1024}) {
         const World world = under_sun(width);
-        const Measured both = lit(world, Technique::Mis);
-        const Measured surface = lit(world, Technique::BsdfOnly);
+        const Measured both = lit(world, integrator::Technique::Mis);
+        const Measured surface = lit(world, integrator::Technique::BsdfOnly);
         add_row(f, std::to_string(width), variance_of(both),
-                variance_of(lit(world, Technique::LightOnly)), variance_of(surface));
+                variance_of(lit(world, integrator::Technique::LightOnly)), variance_of(surface));
         worst_both = std::fmax(worst_both, both.relative_variance);
         if (!blind && surface.relative_variance > kMost) blind = width;
     }
@@ -116,21 +116,21 @@ Finding tiny_lamp() {
                        "surface samples only", "as rendered behind glass"};
     for (const double side : {3., 1., 0.1, 0.01, 1e-3, 1e-4}) {
         const World world = under_lamp(side, false);
-        add_row(f, side, variance_of(lit(world, Technique::Mis)),
-                variance_of(lit(world, Technique::LightOnly)),
-                variance_of(lit(world, Technique::BsdfOnly)),
-                variance_of(lit(under_lamp(side, true), Technique::Mis, 8)));
+        add_row(f, side, variance_of(lit(world, integrator::Technique::Mis)),
+                variance_of(lit(world, integrator::Technique::LightOnly)),
+                variance_of(lit(world, integrator::Technique::BsdfOnly)),
+                variance_of(lit(under_lamp(side, true), integrator::Technique::Mis, 8)));
     }
-    const auto above = [](double most, double least_side, bool pane, Technique technique,
-                          int max_depth) {
+    const auto above = [](double most, double least_side, bool pane,
+                          integrator::Technique technique, int max_depth) {
         const auto fails = [=](double side) {
             return lit(under_lamp(side, pane), technique, max_depth).relative_variance > most;
         };
         return first_failure(10, least_side, fails, 2);
     };
-    const auto surface = above(kMost, 1e-3, false, Technique::BsdfOnly, 1);
-    const auto glass = above(kMost, 1e-3, true, Technique::Mis, 8);
-    const auto both = above(1, 1e-6, false, Technique::Mis, 1);
+    const auto surface = above(kMost, 1e-3, false, integrator::Technique::BsdfOnly, 1);
+    const auto glass = above(kMost, 1e-3, true, integrator::Technique::Mis, 8);
+    const auto both = above(1, 1e-6, false, integrator::Technique::Mis, 1);
     f.where = fmt::format(
         "Without light samples the variance passes {} (1 % of error in 1e8 samples) below a side "
         "of {} m, and so it does as rendered behind glass below {} m: what no path of {} finds "
@@ -158,17 +158,19 @@ struct Highlight {
 // The middle pixel of a picture of a square lamp out of focus; every path finds it or does not.
 Highlight highlight(double side_m, double fstop) {
     const World world = lamp_ahead(side_m, kBehind_m);
-    const ThinLensCamera camera(
-        {M44f(), 0.47f, 1.5f, Iris(Disk{}, kLightFocal_mm / (2 * fstop)), float(kFocus_m)});
+    const camera::ThinLensCamera camera({M44f(), 0.47f, 1.5f,
+                                         camera::Iris(camera::Disk{}, kLightFocal_mm / (2 * fstop)),
+                                         float(kFocus_m)});
     const V2f pixel(0.5f + 0.0007f, 0.5f + 0.0004f);
     const auto ray = [&](const Sampler& sampler) {
         return camera.sample({pixel, sampler}, Bands::rgb())[0].ray;
     };
     Highlight out;
-    out.all = measure(world, PathOptions(), 1u << 17, ray, SamplerKind::Owen);
+    out.all = measure(world, integrator::PathOptions(), 1u << 17, ray, SamplerKind::Owen);
     constexpr uint32_t kMeans = 128, kEach = 256;
-    const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
-    PathStats stats;
+    const integrator::PathTracer tracer(world.scene, *world.bvh, *world.lights,
+                                        integrator::PathOptions());
+    integrator::PathStats stats;
     double variance = 0;
     for (uint32_t seed = 0; seed < kMeans; ++seed) {
         double mean = 0;

@@ -23,8 +23,8 @@ struct RareLamp {
     [[nodiscard]] double nits() const { return 1 / std::sqrt(chance * (1 - chance)); }
     [[nodiscard]] double mean() const { return 1 + chance * nits(); }
     [[nodiscard]] double variance() const { return 1. / 12 + 1; }
-    [[nodiscard]] f4 radiance(const PathStart&, const Bands&, const Sampler& sampler, FilmSample&,
-                              PathStats&) const {
+    [[nodiscard]] f4 radiance(const integrator::PathStart&, const Bands&, const Sampler& sampler,
+                              FilmSample&, integrator::PathStats&) const {
         const V2f u = sampler.get2(Dim::Bsdf);
         const double lamp = double(u.y) < chance ? nits() : 0;
         return splat(0.5f + u.x + static_cast<float>(lamp));
@@ -40,24 +40,25 @@ struct Ends {
 
 Ends ends_with(double chance) {
     const RareLamp lamp{chance};
-    auto target = std::make_shared<NoiseTarget>();
+    auto target = std::make_shared<integrator::NoiseTarget>();
     target->noise = kNoise;
     target->floor_nits = 0.01;
     target->frame_px = {kNoiseSide_px, kNoiseSide_px};
     Ends out;
     for (uint32_t seed = 0; seed < kCells; ++seed) {
-        RenderJob job;
+        integrator::RenderJob job;
         job.seed = seed;
         job.end_sample = 4096;
         job.sampler = SamplerKind::Independent;
         job.filter = Filter(FilterKind::Box, 0.5f);
         job.noise = target;
         Film film(target->frame_px, {0, 0, kNoiseSide_px, kNoiseSide_px}, {}, {}, {.blocks = true});
-        ThreadExecutor executor(1);
-        RenderMonitor monitor;
+        integrator::ThreadExecutor executor(1);
+        integrator::RenderMonitor monitor;
         const test::FilmCamera camera;
-        static_cast<void>(render_to_noise(lamp, camera, job, film, executor, monitor));
-        const NoiseReport said = noise_report(film, *target, job.end_sample);
+        static_cast<void>(integrator::render_to_noise(lamp, camera, job, film, executor, monitor));
+        const integrator::NoiseReport said =
+            integrator::noise_report(film, *target, job.end_sample);
         const double truth = std::sqrt(lamp.variance() / said.mean_samples) / lamp.mean();
         out.at_least += double(said.at_least) / kCells;
         out.too_noisy += double(said.left == 0 && truth > kMuch * kNoise) / kCells;

@@ -21,14 +21,14 @@ constexpr uint32_t kPlanSamples = 32;  ///< of each replicate, as plans take the
 
 struct Planned {
     double met = 0;  ///< camera paths that met the lamp
-    PlanCandidate candidate;
+    apps::PlanCandidate candidate;
 };
 
 // A frame within the circle of confusion of a square lamp: any of its pixels meets the lamp with
 // the same chance.
 Planned planned(double side_m) {
     const World world = lamp_ahead(side_m, kPlanBehind_m);
-    RenderSetup setup;
+    apps::RenderSetup setup;
     const auto borrowed = [](const auto& owned) {
         return std::shared_ptr<std::remove_reference_t<decltype(owned)>>(std::shared_ptr<void>(),
                                                                          &owned);
@@ -39,24 +39,25 @@ Planned planned(double side_m) {
     const double film_mm = kPlanFocal_mm / (1 - kPlanFocal_mm / (kPlanFocus_m * 1e3));
     const auto yfov_rad =
         static_cast<float>(2 * std::atan(kFrame.y * kPlanFilm_px_mm / 2 / film_mm));
-    setup.view.still = std::make_unique<ThinLensCamera>(
-        ThinLens{M44f(), yfov_rad, float(kFrame.x) / float(kFrame.y),
-                 Iris(Disk{}, kPlanFocal_mm / (2 * kFstop)), float(kPlanFocus_m)});
+    setup.view.still = std::make_unique<camera::ThinLensCamera>(camera::ThinLens{
+        M44f(), yfov_rad, float(kFrame.x) / float(kFrame.y),
+        camera::Iris(camera::Disk{}, kPlanFocal_mm / (2 * kFstop)), float(kPlanFocus_m)});
     setup.view.camera = setup.view.still;
     const std::vector<SmallFeature> features = small_features_of(world.scene);
-    const std::vector<FilmRegion> regions = film_regions(*setup.view.still, kFrame, features);
-    const std::vector<SeenLamp> lamps = seen_lamps(setup, kFrame, features, regions);
-    TbbExecutor executor(1);
-    const Pilot pilot(kFrame, kFrame.x * kFrame.y, executor);
-    RenderJob job;
+    const std::vector<camera::FilmRegion> regions =
+        camera::film_regions(*setup.view.still, kFrame, features);
+    const std::vector<apps::SeenLamp> lamps = apps::seen_lamps(setup, kFrame, features, regions);
+    integrator::TbbExecutor executor(1);
+    const apps::Pilot pilot(kFrame, kFrame.x * kFrame.y, executor);
+    integrator::RenderJob job;
     job.sampler = SamplerKind::Independent;  // as the closed form has it
-    const auto model = pilot.model(std::move(setup), job, PathOptions());
+    const auto model = pilot.model(std::move(setup), job, integrator::PathOptions());
     pilot.sample(*model, kPlanSamples);
-    const std::vector<V3d> least = least_means(pilot, *model, lamps);
-    const double floor = pilot_floor(pilot, *model, least);
+    const std::vector<V3d> least = apps::least_means(pilot, *model, lamps);
+    const double floor = apps::pilot_floor(pilot, *model, least);
     Planned out;
-    out.candidate.noise = noise_of(pilot, *model, {model.get(), model.get(), floor, least});
-    out.candidate.rare = rare_light(pilot, *model, lamps, true, floor);
+    out.candidate.noise = apps::noise_of(pilot, *model, {model.get(), model.get(), floor, least});
+    out.candidate.rare = apps::rare_light(pilot, *model, lamps, true, floor);
     for (size_t p = 0; p < pilot.pixels(); ++p)
         for (const V3d& mean : model->means(p)) out.met += mean.x * kPlanSamples;
     return out;
@@ -81,7 +82,7 @@ Finding planned_noise() {
         "and whether it says \"at least\".",
         kPlanFocal_mm, kFstop, kPlanFocus_m, kPlanBehind_m, kFrame.x, kFrame.y, kPlanSamples);
     f.table.columns = {"side (m)", "share", "met", "expected", "variance", "planned", "says"};
-    const double paths = double(kFrame.x) * kFrame.y * kPilotReplicates * kPlanSamples;
+    const double paths = double(kFrame.x) * kFrame.y * apps::kPilotReplicates * kPlanSamples;
     double worst = 1;
     for (const double side : {0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5}) {
         const Planned p = planned(side);

@@ -23,9 +23,10 @@ struct Counted {
 };
 
 Counted count_light(const ShippedLens& of, V2f film_mm) {
-    const Lens& lens = *of.lens;
-    const RayAimer aimer(lens, lens.film_mm(), film_mm.length());
-    const LensIndices<f4> indices = lens.exact_indices(splat(static_cast<float>(kLineD_nm)));
+    const camera::Lens& lens = *of.lens;
+    const camera::RayAimer aimer(lens, lens.film_mm(), film_mm.length());
+    const camera::LensIndices<f4> indices =
+        lens.exact_indices(splat(static_cast<float>(kLineD_nm)));
     const auto stop2_mm2 = static_cast<float>(sqr(of.stop_mm));
     V2f low(-1.f), high(1.f);
     Counted out;
@@ -38,14 +39,16 @@ Counted count_light(const ShippedLens& of, V2f film_mm) {
             for (int x = 0; x < side; x += 4) {
                 const f4 l = low.x + cell.x * (f4{0.5f, 1.5f, 2.5f, 3.5f} + static_cast<float>(x));
                 const f4 m = splat(low.y + cell.y * (static_cast<float>(y) + 0.5f));
-                const AimedRay<f4> c = aimer.cross<f4>(PlanePoint<f4>(film_mm), l, m, indices);
+                const camera::AimedRay<f4> c =
+                    aimer.cross<f4>(camera::PlanePoint<f4>(film_mm), l, m, indices);
                 const f4 stop_x = c.ray.origin.x, stop_y = c.ray.origin.y;
                 m4 on = c.clear & c.ray.alive() & (l * l + m * m < 1.f) &
                         (stop_x * stop_x + stop_y * stop_y <= stop2_mm2);
-                if (!any(on)) continue;
-                LensRay<f4> ray = c.ray;
-                on &= trace_lens<f4>({lens, Towards::Scene, {0, lens.stop() - 1}, Clip::Yes},
-                                     indices, ray);
+                if (!camera::any(on)) continue;
+                camera::LensRay<f4> ray = c.ray;
+                on &= camera::trace_lens<f4>(
+                    {lens, camera::Towards::Scene, {0, lens.stop() - 1}, camera::Clip::Yes},
+                    indices, ray);
                 for (int i = 0; i < 4; ++i) {
                     if (!on[i]) continue;
                     ++passed;
@@ -71,20 +74,20 @@ struct Solved {
 Solved solved_at(const ShippedLens& of, double height_mm) {
     constexpr uint32_t kDraws = 1024;
     const V2f film_mm = kAcross * static_cast<float>(height_mm);
-    const RayAimer aimer(*of.lens, of.lens->film_mm(), height_mm);
-    const Iris iris(Disk{}, of.stop_mm);
+    const camera::RayAimer aimer(*of.lens, of.lens->film_mm(), height_mm);
+    const camera::Iris iris(camera::Disk{}, of.stop_mm);
     const f8 nm = splat8(static_cast<float>(kLineD_nm));
-    const LensIndices<f8> indices = of.lens->exact_indices(nm);
+    const camera::LensIndices<f8> indices = of.lens->exact_indices(nm);
     Solved out;
     uint32_t found = 0;
     for (uint32_t first = 0; first < kDraws; first += 8) {
-        PlanePoint<f8> at(f8{}, f8{});
+        camera::PlanePoint<f8> at(f8{}, f8{});
         for (uint32_t i = 0; i < 8; ++i) {
             const V2f p =
                 iris.sample(Sampler(SamplerKind::Owen, 2, {0, 0, first + i}).get2(Dim::Lens));
             at.x[i] = p.x, at.y[i] = p.y;
         }
-        const FoundRays c = aimer.aim(PlanePoint<f8>(film_mm), at, indices, nm);
+        const camera::FoundRays c = aimer.aim(camera::PlanePoint<f8>(film_mm), at, indices, nm);
         for (int i = 0; i < 8; ++i) {
             if (!c.found[i]) continue;
             ++found;
@@ -104,7 +107,7 @@ struct Drawn {
 
 Drawn drawn_at(const ShippedLens& of, V2f film_mm) {
     constexpr uint32_t kDraws = 1u << 16;
-    const LensCamera camera = of.camera(2 * double(film_mm.x), 2 * double(film_mm.y));
+    const camera::LensCamera camera = of.camera(2 * double(film_mm.x), 2 * double(film_mm.y));
     Drawn out;
     double passed = 0;
     for (uint32_t i = 0; i < kDraws; ++i) {
@@ -141,7 +144,7 @@ Finding pupil_at_wide_fields() {
     double worst_off = 0, folded = 0, heaviest = 0;
     std::string off_name, folded_name, heavy_name;
     int most = 0, clear = 0, all = 0;
-    for (const LensSummary& summary : list_lenses()) {
+    for (const io::LensSummary& summary : io::list_lenses()) {
         const ShippedLens of(summary.name);
         const double r_mm = 0.98 * of.half_circle_mm;
         const V2f film_mm = kAcross * static_cast<float>(r_mm);

@@ -103,7 +103,7 @@ double place_error_px(double away_m) {
     M44f pose;
     for (int i = 0; i < 3; ++i) pose[3][i] = eye[i];
     const float yfov = 2 * std::atan(12.f / 50.f);
-    const ThinLensCamera camera({pose, yfov, 1.5f, {}, 1.f});
+    const camera::ThinLensCamera camera({pose, yfov, 1.5f, {}, 1.f});
     const double pixel_m = 0.006 / 50;
     double worst = 0;
     Draws draws(19);

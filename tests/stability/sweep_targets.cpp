@@ -23,47 +23,49 @@ const V2i kFrame_px(960, 640);
 /// Targets of a cell, as camera/targets/target_grid.cpp has it.
 constexpr int kRoom = 48;
 
-std::unique_ptr<TargetCamera> thin(double fstop, double focus_m) {
-    return target_camera(std::make_shared<ThinLensCamera>(ThinLens{
-        M44f(), 0.47f, 1.5f, Iris(Disk{}, kTargetsFocal_mm / (2 * fstop)), float(focus_m)}));
+std::unique_ptr<camera::TargetCamera> thin(double fstop, double focus_m) {
+    return camera::target_camera(std::make_shared<camera::ThinLensCamera>(camera::ThinLens{
+        M44f(), 0.47f, 1.5f, camera::Iris(camera::Disk{}, kTargetsFocal_mm / (2 * fstop)),
+        float(focus_m)}));
 }
 
 /// A pixel in the middle of the film, with a filter as wide as itself.
 const Filter kBox(FilterKind::Box, 0.5f);
-FilmPoint draw(V2f middle, V2f frame_px, const Sampler& sampler) {
+camera::FilmPoint draw(V2f middle, V2f frame_px, const Sampler& sampler) {
     const V2f offset_px = kBox.sample(sampler.get2(Dim::Film));
     return {middle + offset_px / frame_px, sampler, {&kBox, offset_px, frame_px}};
 }
 const V2f kPixel = (V2f(kFrame_px) / 2.f + V2f(0.5f)) / V2f(kFrame_px);
-const FilmCell kCell{kPixel - V2f(8) / V2f(kFrame_px), kPixel + V2f(8) / V2f(kFrame_px)};
+const camera::FilmCell kCell{kPixel - V2f(8) / V2f(kFrame_px), kPixel + V2f(8) / V2f(kFrame_px)};
 
 /// Makes targets those of a camera, of equal chances, for all of the film. Returns what is listed.
-std::vector<ListedTarget> use(TargetCamera& camera, const FilmCell& cell,
-                              const std::vector<Target>& targets) {
-    TargetGrid grid{{1, 1}, {{camera.map(cell), {}}}, targets};
-    std::vector<ListedTarget>& list = grid.lists[0].targets;
-    for (const Target& target : targets)
+std::vector<camera::ListedTarget> use(camera::TargetCamera& camera, const camera::FilmCell& cell,
+                                      const std::vector<camera::Target>& targets) {
+    camera::TargetGrid grid{{1, 1}, {{camera.map(cell), {}}}, targets};
+    std::vector<camera::ListedTarget>& list = grid.lists[0].targets;
+    for (const camera::Target& target : targets)
         if (const auto listed = grid.lists[0].map
                                     ? camera.listed(target, *grid.lists[0].map, kFrame_px)
                                     : std::nullopt)
             list.push_back(*listed);
-    for (ListedTarget& listed : list) listed.chance = 1.f / static_cast<float>(list.size());
-    std::vector<ListedTarget> out = list;
-    camera.set_targets(std::make_shared<const TargetGrid>(std::move(grid)));
+    for (camera::ListedTarget& listed : list) listed.chance = 1.f / static_cast<float>(list.size());
+    std::vector<camera::ListedTarget> out = list;
+    camera.set_targets(std::make_shared<const camera::TargetGrid>(std::move(grid)));
     return out;
 }
 
 /// Relative variance of samples of a pixel, each an ordinary ray and one to a target.
-double variance_with(const World& world, const Camera& camera) {
-    const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
-    PathStats stats;
+double variance_with(const World& world, const camera::Camera& camera) {
+    const integrator::PathTracer tracer(world.scene, *world.bvh, *world.lights,
+                                        integrator::PathOptions());
+    integrator::PathStats stats;
     double sum = 0, squares = 0;
     for (uint32_t i = 0; i < kTargetsSamples; ++i) {
         const Sampler sampler(SamplerKind::Independent, 1, {0, 0, i});
-        const FilmPoint point = draw(kPixel, V2f(kFrame_px), sampler);
+        const camera::FilmPoint point = draw(kPixel, V2f(kFrame_px), sampler);
         const Bands bands = Bands::rgb();
         double light = 0;
-        for (const CameraPath& path : camera.sample(point, bands)) {
+        for (const camera::CameraPath& path : camera.sample(point, bands)) {
             FilmSample none;
             light += double((path.weight * path.mis_weight *
                              tracer.radiance({path.ray, path.lanes, path.hero_decided}, bands,
@@ -108,7 +110,7 @@ double variance_of_many(int lamps, int targets) {
     constexpr float kSide_m = 0.004f;
     World world;
     const auto camera = thin(1.4, 1);
-    std::vector<Target> list;
+    std::vector<camera::Target> list;
     for (int i = 0; i < lamps; ++i) {
         const V3f at = ahead(V2f(float(i % 8) - 3.5f, float(i / 8) - 3.5f) * 0.02f);
         place_lamp(world, at, kSide_m);
@@ -134,28 +136,28 @@ constexpr double kNear = 10;
 std::optional<ShippedLens> shipped(const std::string& name, bool near) {
     ShippedLens lens(name);
     if (!near) return lens;
-    const double focal_mm = first_order(*lens.lens, kLineD_nm).focal_length_mm;
-    auto focused_lens = focused(*lens.lens, lens.lens->film_mm() - kNear * focal_mm);
+    const double focal_mm = camera::first_order(*lens.lens, kLineD_nm).focal_length_mm;
+    auto focused_lens = camera::focused(*lens.lens, lens.lens->film_mm() - kNear * focal_mm);
     if (!focused_lens) return std::nullopt;
-    lens.lens = std::make_shared<const Lens>(*std::move(focused_lens));
+    lens.lens = std::make_shared<const camera::Lens>(*std::move(focused_lens));
     return lens;
 }
 
 // The cell is half a millimetre wide.
 Missed missed_by(const ShippedLens& lens, double of_circle) {
     constexpr uint32_t kRays = 1u << 18;
-    const auto aims = target_camera(
-        std::make_shared<LensCamera>(lens.input(2 * lens.half_circle_mm, 2 * lens.half_circle_mm)));
-    TargetCamera& camera = *aims;
+    const auto aims = camera::target_camera(std::make_shared<camera::LensCamera>(
+        lens.input(2 * lens.half_circle_mm, 2 * lens.half_circle_mm)));
+    camera::TargetCamera& camera = *aims;
     const V2f film(static_cast<float>(0.5 - 0.5 * of_circle), 0.5f);
-    const FilmPoint middle{film, Sampler(SamplerKind::Owen, 3, {0, 0, 0})};
-    const CameraSample seen = camera.sample(middle, Bands::rgb());
+    const camera::FilmPoint middle{film, Sampler(SamplerKind::Owen, 3, {0, 0, 0})};
+    const camera::CameraSample seen = camera.sample(middle, Bands::rgb());
     Missed out;
     if (seen.empty()) return out;
     const Ray& ray = seen[0].ray;
     const V2f half(static_cast<float>(0.125 / lens.half_circle_mm));
-    const FilmCell cell{film - half, film + half};
-    Target target;
+    const camera::FilmCell cell{film - half, film + half};
+    camera::Target target;
     bool is_listed = false;
     for (const float away_m : {2.f, 1.f, 0.5f, 0.25f, 0.12f}) {
         target = {ray.origin + away_m * ray.direction, 1e-3f * away_m, false};
@@ -165,21 +167,21 @@ Missed missed_by(const ShippedLens& lens, double of_circle) {
         if (is_listed) break;
     }
     if (!is_listed) return out;
-    const TargetCell* const of_all = &camera.targets()->lists[0];
-    std::array<FilmPoint, kMostFilmPoints> points;
-    std::array<Bands, kMostFilmPoints> bands;
-    std::array<const TargetCell*, kMostFilmPoints> cells;
-    std::array<CameraSample, kMostFilmPoints> found;
+    const camera::TargetCell* const of_all = &camera.targets()->lists[0];
+    std::array<camera::FilmPoint, camera::kMostFilmPoints> points;
+    std::array<Bands, camera::kMostFilmPoints> bands;
+    std::array<const camera::TargetCell*, camera::kMostFilmPoints> cells;
+    std::array<camera::CameraSample, camera::kMostFilmPoints> found;
     bands.fill(Bands::rgb());
     cells.fill(of_all);
-    for (uint32_t first = 0; first < kRays; first += kMostFilmPoints) {
+    for (uint32_t first = 0; first < kRays; first += camera::kMostFilmPoints) {
         // One pixel is the cell.
-        for (uint32_t i = 0; i < kMostFilmPoints; ++i)
+        for (uint32_t i = 0; i < camera::kMostFilmPoints; ++i)
             points[i] = draw(film, V2f(1.f) / (half * 2.f),
                              Sampler(SamplerKind::Independent, 4, {0, 0, first + i}));
         camera.sample_beside(points, bands, cells, found);
-        for (const CameraSample& sample : found)
-            for (const CameraPath& path : sample) {
+        for (const camera::CameraSample& sample : found)
+            for (const camera::CameraPath& path : sample) {
                 const V3f to = target.centre - path.ray.origin;
                 const float along = to.dot(path.ray.direction);
                 if ((along * path.ray.direction - to).length() > target.radius_m) continue;
@@ -242,7 +244,7 @@ Finding search_for_targets() {
                        "distance (m)", "rays that pass", "not found"};
     double worst = 0;
     std::string name;
-    for (const LensSummary& summary : list_lenses())
+    for (const io::LensSummary& summary : io::list_lenses())
         for (const bool near : {false, true}) {
             const auto lens = shipped(summary.name, near);
             if (!lens) continue;

@@ -15,40 +15,42 @@ constexpr double kThinFocal_mm = 50, kThinPixel_mm = 0.006;  ///< 6000 pixels on
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 // How far apart formula and trace meet the film that is sharp near the axis.
-double film_error_mm(const SingletOptics& lens, double object_mm, double h_mm) {
-    const auto traced = traced_spherical_aberration_mm(lens, object_mm, h_mm);
-    const double zonal_mm = zonal_focal_length_mm(lens, object_mm, h_mm);
+double film_error_mm(const camera::SingletOptics& lens, double object_mm, double h_mm) {
+    const auto traced = camera::traced_spherical_aberration_mm(lens, object_mm, h_mm);
+    const double zonal_mm = camera::zonal_focal_length_mm(lens, object_mm, h_mm);
     if (!traced || !(zonal_mm > 0 && zonal_mm < object_mm)) return kFar;
-    const double image_mm = image_distance_mm(lens.focal_mm, object_mm);
+    const double image_mm = camera::image_distance_mm(lens.focal_mm, object_mm);
     const auto height = [&](double aberration_mm) {
         return aberration_mm * h_mm / (image_mm - aberration_mm);
     };
-    return std::fabs(height(spherical_aberration_mm(lens, object_mm, h_mm)) - height(*traced));
+    return std::fabs(height(camera::spherical_aberration_mm(lens, object_mm, h_mm)) -
+                     height(*traced));
 }
 
-AberratedLens singlet_camera(const Glass& glass, double bending, double h_mm, double focus_mm) {
-    return {M44f(), Singlet::bent(glass, kThinFocal_mm, bending), Iris(Disk{}, h_mm),
-            focus_mm * 1e-3};
+camera::AberratedLens singlet_camera(const Glass& glass, double bending, double h_mm,
+                                     double focus_mm) {
+    return {M44f(), camera::Singlet::bent(glass, kThinFocal_mm, bending),
+            camera::Iris(camera::Disk{}, h_mm), focus_mm * 1e-3};
 }
 
 // What the program says of a singlet at that f-number.
 std::string warning_of(const Glass& glass, float fstop) {
-    CameraModel plan;
+    apps::CameraModel plan;
     plan.asked.lens = "singlet:" + glass.name;
     plan.asked.focal_length_mm = static_cast<float>(kThinFocal_mm);
     plan.asked.fstop = fstop;
-    plan.optics = SingleLens{glass, 0, {}};
+    plan.optics = apps::SingleLens{glass, 0, {}};
     std::string said;
-    const ThinView view = thin_view(plan, "", 1.5f);
-    static_cast<void>(
-        set_up_thin(plan, view, ThinLens{}, 1e6f, [&](const std::string& text) { said += text; }));
+    const apps::ThinView view = apps::thin_view(plan, "", 1.5f);
+    static_cast<void>(apps::set_up_thin(plan, view, camera::ThinLens{}, 1e6f,
+                                        [&](const std::string& text) { said += text; }));
     return said;
 }
 
 }  // namespace
 
 Finding third_order_formula() {
-    const Glass glass = LensGlasses({}).find("schott:N-BK7").value();
+    const Glass glass = io::LensGlasses({}).find("schott:N-BK7").value();
     const double n = glass.index(kLineD_nm);
     Finding f{.method = "Third-order formula of a singlet", .fails = "bias"};
     f.sweep = fmt::format(
@@ -65,7 +67,7 @@ Finding third_order_formula() {
     double ten_worst = 0, ten_worst_at = 0, px_worst = 0, px_worst_at = 0;
     for (const double q : {0., 1.})
         for (const double s : {kFar, 100., 10., 4., 2., 1.5, 1.2, 1.1, 1.05}) {
-            const SingletOptics lens{n, kThinFocal_mm, q};
+            const camera::SingletOptics lens{n, kThinFocal_mm, q};
             const double object_mm = s * kThinFocal_mm;
             const auto fnumber = [&](auto fails) -> std::optional<double> {
                 const auto h = first_failure(1e-3 * kThinFocal_mm, kThinFocal_mm, fails, 32);
@@ -74,18 +76,18 @@ Finding third_order_formula() {
             };
             const auto off_by = [&](double most) {
                 return fnumber([&, most](double h_mm) {
-                    return spherical_aberration_error(lens, object_mm, h_mm) > most;
+                    return camera::spherical_aberration_error(lens, object_mm, h_mm) > most;
                 });
             };
             const auto one = off_by(0.01), ten = off_by(0.1);
             const auto pixel = fnumber(
                 [&](double h_mm) { return film_error_mm(lens, object_mm, h_mm) > kThinPixel_mm; });
             const auto no_ray = fnumber([&](double h_mm) {
-                return !traced_spherical_aberration_mm(lens, object_mm, h_mm);
+                return !camera::traced_spherical_aberration_mm(lens, object_mm, h_mm);
             });
             const auto refused = fnumber([&](double h_mm) {
                 return refusal_of([&] {
-                           AberratedLensCamera(singlet_camera(glass, q, h_mm, object_mm));
+                           camera::AberratedLensCamera(singlet_camera(glass, q, h_mm, object_mm));
                        }) != "accepted";
             });
             add_row(f, s, q, one, ten, pixel, no_ray, refused);
@@ -103,7 +105,7 @@ Finding third_order_formula() {
         "From 10 % on a warning says from which f-number on the formula holds (at f/1.5: \"{}\"). "
         "An iris at whose rim f(h) falls below half of f is refused: \"{}\".",
         warning_of(glass, 1.5f), refusal_of([&] {
-            AberratedLensCamera(singlet_camera(glass, 0, 0.7 * kThinFocal_mm, kFar));
+            camera::AberratedLensCamera(singlet_camera(glass, 0, 0.7 * kThinFocal_mm, kFar));
         }));
     return f;
 }
@@ -117,14 +119,15 @@ double spread_px(double closeness, float away_m) {
     M44f pose;
     pose[3][0] = pose[3][1] = pose[3][2] = away_m;
     const auto focus_m = static_cast<float>(focus_mm * 1e-3);
-    const ThinLensCamera camera({pose, static_cast<float>(2 * std::atan(12 / film_mm)), 1.5f,
-                                 Iris(Disk{}, kThinFocal_mm / 4), focus_m});
+    const camera::ThinLensCamera camera({pose, static_cast<float>(2 * std::atan(12 / film_mm)),
+                                         1.5f, camera::Iris(camera::Disk{}, kThinFocal_mm / 4),
+                                         focus_m});
     const double z_m = double(away_m) - double(focus_m);
     double most_px = 0;
     for (const V2f& film : {V2f(0.5f, 0.5f), V2f(0.9f, 0.2f)}) {
         std::optional<V3d> first;
         for (uint32_t i = 0; i < 256; ++i) {
-            const CameraPath path =
+            const camera::CameraPath path =
                 camera.sample({film, Sampler(SamplerKind::Owen, 1, {0, 0, i})}, Bands::rgb())[0];
             const V3d o(path.ray.origin), d(path.ray.direction);
             const V3d p = o + d * ((z_m - o.z) / d.z);
@@ -142,8 +145,8 @@ double film_place_error(double closeness) {
         const double focal_mm = 10 + 1.9 * i, focus_mm = focal_mm * (1 + closeness);
         const double rounded_mm = 1e3 * double(static_cast<float>(focus_mm * 1e-3));
         if (!(rounded_mm > focal_mm)) return kFar;
-        worst = std::fmax(worst, std::fabs(image_distance_mm(focal_mm, rounded_mm) /
-                                               image_distance_mm(focal_mm, focus_mm) -
+        worst = std::fmax(worst, std::fabs(camera::image_distance_mm(focal_mm, rounded_mm) /
+                                               camera::image_distance_mm(focal_mm, focus_mm) -
                                            1));
     }
     return worst;
@@ -174,8 +177,9 @@ Finding focus_near_focal_length() {
         "below {}. At S <= f there is no image",
         number(away), number(1 / away.value_or(0)), number(here), number(place));
     f.instead = fmt::format(
-        "Down to the last float the camera renders what it has; for S = f, \"{}\".",
-        refusal_of([] { static_cast<void>(image_distance_mm(kThinFocal_mm, kThinFocal_mm)); }));
+        "Down to the last float the camera renders what it has; for S = f, \"{}\".", refusal_of([] {
+            static_cast<void>(camera::image_distance_mm(kThinFocal_mm, kThinFocal_mm));
+        }));
     return f;
 }
 

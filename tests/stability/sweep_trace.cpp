@@ -30,7 +30,7 @@ Spread worst_of(int trials, const Trial& trial) {
 // Parallel to the axis onto a glass ball's front of 50 mm, at that cosine of incidence.
 Spread into_glass(double cosine) {
     constexpr double kRadius_mm = 50;
-    const Lens lens = lens_of({surface(1 / kRadius_mm, 1e3, 100, true)});
+    const camera::Lens lens = lens_of({surface(1 / kRadius_mm, 1e3, 100, true)});
     Draws draws(11);
     return worst_of(512, [&] {
         const double c = cosine * (1 + 0.1 * double(draws.next()));
@@ -42,7 +42,7 @@ Spread into_glass(double cosine) {
 
 // Out of glass through a plane, at that cosine of refraction.
 Spread out_of_glass(double cosine) {
-    Lens lens = lens_of({surface(0, 1e3, 5, true), surface(0, 1e3, 100, false)});
+    camera::Lens lens = lens_of({surface(0, 1e3, 5, true), surface(0, 1e3, 100, false)});
     Draws draws(12);
     return worst_of(512, [&] {
         const double c = cosine * (1 + 0.1 * double(draws.next()));
@@ -95,7 +95,7 @@ namespace {
 
 // Through a bent plate of 5 mm, 20 degrees off the axis and 10 mm from it.
 double over_radius_mm(double radius_mm) {
-    const Lens lens =
+    const camera::Lens lens =
         lens_of({surface(1 / radius_mm, 1e3, 5, true), surface(1 / radius_mm, 1e3, 100, false)});
     Draws draws(13);
     return worst_of(512,
@@ -111,7 +111,7 @@ double over_radius_mm(double radius_mm) {
 
 // From an origin so far away onto the middle of a sphere of 50 mm.
 double from_afar_mm(double distance_mm) {
-    const Lens lens = lens_of({surface(1 / 50., 1e3, 100, true)});
+    const camera::Lens lens = lens_of({surface(1 / 50., 1e3, 100, true)});
     Draws draws(14);
     return worst_of(512,
                     [&] {

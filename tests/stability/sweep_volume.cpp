@@ -35,7 +35,7 @@ World panes(int count) {
 
 // Share of the light that the end of paths in clear glass cuts off.
 double lost(const World& world, int max_specular_depth) {
-    PathOptions options;
+    integrator::PathOptions options;
     options.max_specular_depth = max_specular_depth;
     return 1 - measure(world, options, 1u << 13, along_z).mean;
 }
@@ -55,7 +55,7 @@ double from_lamp_in_slabs(double a, bool closed) {
     }
     world.place(quad(V3f(-5, -5, -2.5f), V3f(10, 0, 0), V3f(0, 10, 0)), glowing(1));
     world.finish();
-    PathOptions options;
+    integrator::PathOptions options;
     options.roulette_depth = options.max_specular_depth;
     return measure(world, options, 256, along_z).mean;
 }
@@ -68,7 +68,7 @@ double through_glass_and_water(double gap_m) {
     world.place(box(V3f(-8, -8, -3), V3f(8, 8, -1 - gap)), clear_glass(1.33f));
     world.place(quad(V3f(-7, -7, -4), V3f(14, 0, 0), V3f(0, 14, 0)), glowing(1));
     world.finish();
-    return measure(world, PathOptions(), 1u << 16, along_z).mean;
+    return measure(world, integrator::PathOptions(), 1u << 16, along_z).mean;
 }
 
 // Share of light across a stack of media, what goes to and fro included: Fresnel's equations at
@@ -92,7 +92,7 @@ Finding chains_of_glass() {
         "A ray onto N clear panes (n = 1.5) in a white sky, 8192 samples: what of 1 is lost "
         "because paths end at --method max-clear-depth, 256 unless it is given.";
     f.table.columns = {"panes", "lost at depth 16", "lost at depth 64", "lost at depth 256"};
-    const int usual = PathOptions().max_specular_depth;
+    const int usual = integrator::PathOptions().max_specular_depth;
     for (const int count : {1, 2, 4, 8, 16, 32, 64, 128}) {
         const World world = panes(count);
         add_row(f, std::to_string(count), percent(lost(world, 16)), percent(lost(world, 64)),

@@ -46,10 +46,11 @@ struct Measured {
 
 /// ray(sampler) is asked for every sample; 0 samples is an error of the caller.
 template <class MakeRay>
-[[nodiscard]] Measured measure(const World& world, const PathOptions& options, uint32_t samples,
-                               const MakeRay& ray, SamplerKind kind = SamplerKind::Independent) {
-    const PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
-    PathStats stats;
+[[nodiscard]] Measured measure(const World& world, const integrator::PathOptions& options,
+                               uint32_t samples, const MakeRay& ray,
+                               SamplerKind kind = SamplerKind::Independent) {
+    const integrator::PathTracer tracer(world.scene, *world.bvh, *world.lights, options);
+    integrator::PathStats stats;
     double sum = 0, squares = 0, found = 0;
     for (uint32_t i = 0; i < samples; ++i) {
         const Sampler sampler(kind, 1, {0, 0, i});

@@ -21,11 +21,11 @@ namespace petzval::test {
 /// What is rendered: a scene that is not finished yet, and a camera for each time.
 struct Motion {
     Scene scene;
-    std::function<std::unique_ptr<Camera>(const M44f& to_world)> camera;
+    std::function<std::unique_ptr<camera::Camera>(const M44f& to_world)> camera;
     /// Places of the camera at steps; one: it stands still.
     std::vector<M44f> camera_steps;
-    PathOptions options{};
-    ShutterCurve curve = ShutterCurve::box();
+    integrator::PathOptions options{};
+    camera::ShutterCurve curve = camera::ShutterCurve::box();
     V2i size{8, 6};
 };
 
@@ -85,26 +85,26 @@ inline Light between(const Light& a, const Light& b, double share) {
 /// Renders a scene that is not finished; returns the green of all pixels.
 class Renderer {
   public:
-    Renderer(Scene scene, const PathOptions& options) : scene_(std::move(scene)) {
+    Renderer(Scene scene, const integrator::PathOptions& options) : scene_(std::move(scene)) {
         finish_scene(scene_);
         bvh_ = std::make_unique<Bvh>(scene_, Traversal::Robust);
         lights_ = std::make_unique<LightChoice>(scene_, LightChoiceKind::Tree);
-        tracer_ = std::make_unique<PathTracer<>>(scene_, *bvh_, *lights_, options);
+        tracer_ = std::make_unique<integrator::PathTracer<>>(scene_, *bvh_, *lights_, options);
     }
 
     [[nodiscard]] const Scene& scene() const { return scene_; }
-    [[nodiscard]] std::vector<float> operator()(const Camera& camera, V2i size, uint32_t spp,
-                                                uint32_t seed, int threads = 1,
+    [[nodiscard]] std::vector<float> operator()(const camera::Camera& camera, V2i size,
+                                                uint32_t spp, uint32_t seed, int threads = 1,
                                                 int tile_size_px = 16) const {
-        RenderJob job;
+        integrator::RenderJob job;
         job.end_sample = spp;
         job.seed = seed;
         job.tile_size_px = tile_size_px;
         job.filter = Filter(FilterKind::Box, 0.5f);
         Film film(size, {0, 0, size.x, size.y}, {});
-        ThreadExecutor executor(threads);
-        RenderMonitor monitor;
-        (void)render(*tracer_, camera, job, film, executor, monitor);
+        integrator::ThreadExecutor executor(threads);
+        integrator::RenderMonitor monitor;
+        (void)integrator::render(*tracer_, camera, job, film, executor, monitor);
         EXPECT_EQ(film.left_out().count(), 0u);
         std::vector<float> out;
         for (int y = 0; y < size.y; ++y)
@@ -116,7 +116,7 @@ class Renderer {
     Scene scene_;
     std::unique_ptr<Bvh> bvh_;
     std::unique_ptr<LightChoice> lights_;
-    std::unique_ptr<PathTracer<>> tracer_;
+    std::unique_ptr<integrator::PathTracer<>> tracer_;
 };
 
 /// Pose of the camera of a motion in the middle of the exposure.
@@ -126,20 +126,20 @@ class Renderer {
 }
 
 /// The camera of a motion, where it stands in the middle of the exposure.
-[[nodiscard]] inline std::shared_ptr<const Camera> middle_camera(const Motion& motion) {
+[[nodiscard]] inline std::shared_ptr<const camera::Camera> middle_camera(const Motion& motion) {
     return motion.camera(middle_pose(motion));
 }
 
 /// A camera of a motion with its shutter.
-[[nodiscard]] inline std::unique_ptr<Camera> shuttered(const Motion& motion,
-                                                       std::shared_ptr<const Camera> still) {
+[[nodiscard]] inline std::unique_ptr<camera::Camera> shuttered(
+    const Motion& motion, std::shared_ptr<const camera::Camera> still) {
     const auto& steps = motion.camera_steps;
     const std::span<const M44f> moves(steps.data(), steps.size() > 1 ? steps.size() : 0);
-    return std::make_unique<MovingCamera>(
+    return std::make_unique<camera::MovingCamera>(
         std::move(still),
-        std::make_shared<const Shutter>(motion.curve, moves, middle_pose(motion)));
+        std::make_shared<const camera::Shutter>(motion.curve, moves, middle_pose(motion)));
 }
-[[nodiscard]] inline std::unique_ptr<Camera> shuttered(const Motion& motion) {
+[[nodiscard]] inline std::unique_ptr<camera::Camera> shuttered(const Motion& motion) {
     return shuttered(motion, middle_camera(motion));
 }
 
@@ -153,7 +153,8 @@ inline void add(Pixels& to, const std::vector<float>& picture) {
 inline constexpr uint32_t kBlurredSeeds = 20, kStills = 12;
 
 /// Means of pixels over seeds, with the shutter.
-[[nodiscard]] inline Pixels blurred(const Motion& motion, const Camera& camera, uint32_t spp) {
+[[nodiscard]] inline Pixels blurred(const Motion& motion, const camera::Camera& camera,
+                                    uint32_t spp) {
     const Renderer renderer(motion.scene, motion.options);
     Pixels out;
     for (uint32_t seed = 0; seed < kBlurredSeeds; ++seed)
@@ -163,7 +164,7 @@ inline constexpr uint32_t kBlurredSeeds = 20, kStills = 12;
 
 /// The same of averages of stills, each at a random time of its part of the exposure.
 [[nodiscard]] inline Pixels of_stills(const Motion& motion, uint32_t spp) {
-    const Shutter shutter(motion.curve, {}, M44f());
+    const camera::Shutter shutter(motion.curve, {}, M44f());
     Pixels out;
     Random random(77);
     for (uint32_t seed = 0; seed < kBlurredSeeds; ++seed) {

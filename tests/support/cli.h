@@ -107,9 +107,9 @@ class CliTest : public ::testing::Test {
         EXPECT_EQ(run.out + run.err, "");
         return file_bytes(path(name));
     }
-    [[nodiscard]] Picture render(const Words& words, const std::string& name = "out.exr") {
+    [[nodiscard]] io::Picture render(const Words& words, const std::string& name = "out.exr") {
         EXPECT_FALSE(render_bytes(words, name).empty());
-        return read_picture(path(name));
+        return io::read_picture(path(name));
     }
     /// Names in the folder.
     [[nodiscard]] std::set<std::string> listing() const {
@@ -173,13 +173,13 @@ inline bool wait_for_samples(Process& render, double more_than) {
     });
 }
 
-inline float value_at(const Picture& p, int x, int y, const std::string& channel) {
-    const int c = channel_index(p, channel);
+inline float value_at(const io::Picture& p, int x, int y, const std::string& channel) {
+    const int c = io::channel_index(p, channel);
     EXPECT_GE(c, 0) << channel;
     return c < 0 ? 0.f : p.pixels[(size_t(y) * p.width + x) * p.channels.size() + size_t(c)];
 }
 
-inline double mean_of(const Picture& p, const std::string& channel) {
+inline double mean_of(const io::Picture& p, const std::string& channel) {
     double sum = 0;
     for (int y = 0; y < p.height; ++y)
         for (int x = 0; x < p.width; ++x) sum += value_at(p, x, y, channel);
@@ -187,7 +187,7 @@ inline double mean_of(const Picture& p, const std::string& channel) {
 }
 
 /// Metadata as text.
-inline std::string metadata_of(const Picture& p, const std::string& name) {
+inline std::string metadata_of(const io::Picture& p, const std::string& name) {
     for (const auto& [key, value] : p.metadata) {
         if (key != name) continue;
         if (const auto* text = std::get_if<std::string>(&value)) return *text;

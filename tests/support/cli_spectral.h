@@ -82,7 +82,7 @@ class CliSpectral : public CliTest {
     }
     /// A sensor whose curves are mixtures of the eye's, so that a matrix undoes them.
     std::string mixed_eye() {
-        const auto eye = standard_observer();
+        const auto eye = io::standard_observer();
         return csv("eye.csv", [&](int nm) -> std::vector<double> {
             const double x = eye[0].at_nm(nm), y = eye[1].at_nm(nm), z = eye[2].at_nm(nm);
             return {0.9 * x + 0.2 * y, 0.1 * x + 0.8 * y + 0.1 * z, 0.1 * y + 0.9 * z};
@@ -102,11 +102,11 @@ class CliSpectral : public CliTest {
     /// Renders of 48x32 pixels and six samples are equal for all numbers of threads, in crops of
     /// these channels, and merged from ranges. with: the words of a render, these included.
     void expect_equal_renders(const std::function<Words(Words)>& with, const Words& channels) {
-        const Picture whole = render(with({"--spp", "6"}), "whole.exr");
+        const io::Picture whole = render(with({"--spp", "6"}), "whole.exr");
         const std::string bytes = file_bytes(path("whole.exr"));
         EXPECT_TRUE(bytes == render_bytes(with({"--spp", "6", "--threads", "1"})));
         EXPECT_TRUE(bytes == render_bytes(with({"--spp", "6", "--threads", "4"})));
-        const Picture part = render(with({"--spp", "6", "--crop", "13,5,20,11"}));
+        const io::Picture part = render(with({"--spp", "6", "--crop", "13,5,20,11"}));
         for (int y = 0; y < 11; ++y)
             for (int x = 0; x < 20; ++x)
                 for (const std::string& c : channels)

@@ -40,25 +40,26 @@ struct Decoder {
     };
     const auto codec = [bytes_of](bool (*decodes)(std::span<const uint8_t>)) -> Decoder {
         return {".bin", [bytes_of, decodes](const fs::path& path) {
-                    if (!decodes(bytes_of(path))) throw InputError(path.string(), "", "is broken");
+                    if (!decodes(bytes_of(path)))
+                        throw io::InputError(path.string(), "", "is broken");
                 }};
     };
-    const auto lens = [](const fs::path& path) { (void)load_lens(path.string()); };
-    const auto picture = [](const fs::path& path) { (void)read_picture(path); };
+    const auto lens = [](const fs::path& path) { (void)io::load_lens(path.string()); };
+    const auto picture = [](const fs::path& path) { (void)io::read_picture(path); };
     const auto load_with_more = [](const fs::path& path) {
-        PictureBudget pictures;
-        (void)load_gltf(path, FileScope::Anywhere, pictures,
-                        {.scene = {},
-                         .variant = {},
-                         .point_line_radius_m = 0.1f,
-                         .animation = AnimationChoice{0.5, {}, true}});
+        io::PictureBudget pictures;
+        (void)io::load_gltf(path, io::FileScope::Anywhere, pictures,
+                            {.scene = {},
+                             .variant = {},
+                             .point_line_radius_m = 0.1f,
+                             .animation = io::AnimationChoice{0.5, {}, true}});
     };
     const auto load_still_and_open = [](const fs::path& path) {
-        (void)load_gltf(path);
-        PictureBudget pictures;
-        GltfChoices open;
-        open.animation = AnimationChoice{1, {}, true, 1};
-        (void)load_gltf(path, FileScope::Anywhere, pictures, open);
+        (void)io::load_gltf(path);
+        io::PictureBudget pictures;
+        io::GltfChoices open;
+        open.animation = io::AnimationChoice{1, {}, true, 1};
+        (void)io::load_gltf(path, io::FileScope::Anywhere, pictures, open);
     };
     static const std::map<std::string, Decoder> all = {
         {"gltf", {".gltf", load_with_more}},
@@ -68,43 +69,46 @@ struct Decoder {
         {"texture",
          {".bin",
           [bytes_of](const fs::path& path) {
-              PictureBudget budget;
-              (void)decode_image(bytes_of(path), path.string(), "/images/0", budget);
+              io::PictureBudget budget;
+              (void)io::decode_image(bytes_of(path), path.string(), "/images/0", budget);
           }}},
         {"exr", {".exr", picture}},
         {"hdr",
          {".hdr",
           [](const fs::path& path) {
-              PictureBudget budget;
-              (void)load_sky(
+              io::PictureBudget budget;
+              (void)io::load_sky(
                   path, 0, 1, [](auto&) {}, budget);
           }}},
         {"png",
-         {".png", [](const fs::path& path) { (void)read_mask_aperture(path, PictureBudget()); }}},
+         {".png",
+          [](const fs::path& path) { (void)io::read_mask_aperture(path, io::PictureBudget()); }}},
         {"jpg", {".jpg", picture}},
-        {"svg", {".svg", [](const fs::path& path) { (void)read_svg_aperture(path); }}},
+        {"svg", {".svg", [](const fs::path& path) { (void)io::read_svg_aperture(path); }}},
         {"lens_json", {".json", lens}},
         {"lens_dat", {".dat", lens}},
         {"lens_zmx", {".zmx", lens}},
         {"agf",
          {".agf",
           [](const fs::path& path) {
-              const AgfCatalog catalog(path);
+              const io::AgfCatalog catalog(path);
               for (const char* name : {"A", "B", "C", "D", "N-BK7"}) (void)catalog.find(name);
           }}},
         {"ies",
          {".ies",
           [bytes_of](const fs::path& path) {
               const std::vector<uint8_t> bytes = bytes_of(path);
-              const IesFile found =
-                  parse_ies({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
-                            path.string(), "/extensions/EXT_lights_ies/lights/0");
+              const io::IesFile found =
+                  io::parse_ies({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
+                                path.string(), "/extensions/EXT_lights_ies/lights/0");
               for (const V3f& d : {V3f(0, 0, 1), V3f(-1, 0, 0), petzval::unit(V3f(1, -2, 0.5f))})
                   if (!(found.profile.intensity(d) >= 0)) std::abort();
               if (!(found.profile.flux_lm() >= 0)) std::abort();
           }}},
-        {"spectrum", {".csv", [](const fs::path& path) { (void)find_illuminant(path.string()); }}},
-        {"response", {".csv", [](const fs::path& path) { (void)find_response(path.string()); }}},
+        {"spectrum",
+         {".csv", [](const fs::path& path) { (void)io::find_illuminant(path.string()); }}},
+        {"response",
+         {".csv", [](const fs::path& path) { (void)io::find_response(path.string()); }}},
     };
     return all;
 }
@@ -121,7 +125,7 @@ inline bool is_accepted(const Decoder& decoder, std::span<const uint8_t> bytes,
     try {
         decoder.read(path);
         return true;
-    } catch (const InputError&) {
+    } catch (const io::InputError&) {
         return false;
     }
 }

@@ -74,7 +74,7 @@ inline TinyGltf full_gltf() {
 inline std::string refused_glb(const TinyGltf& file) {
     const TempFolder folder;
     const auto path = file.save_glb(folder.path / "a.glb");
-    return refusal([&] { (void)read_gltf_source(path); });
+    return refusal([&] { (void)io::read_gltf_source(path); });
 }
 
 }  // namespace petzval

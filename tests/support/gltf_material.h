@@ -32,7 +32,7 @@ inline int add_texture(TinyGltf& file, uint8_t red, json more = json::object()) 
 }
 
 inline Material load_material(const TinyGltf& file) {
-    GltfFile loaded = load(file);
+    io::GltfFile loaded = load(file);
     EXPECT_EQ(loaded.scene.materials.size(), 1u);
     return loaded.scene.materials.at(loaded.scene.meshes.at(0).material);
 }

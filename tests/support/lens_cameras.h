@@ -24,15 +24,16 @@ inline const std::string kTakumar = "takumar-50mm-f1.2", kGauss = "double-gauss-
     return m;
 }
 
-[[nodiscard]] inline LensCameraInput input_of(const std::string& name,
-                                              DispersionMode dispersion = DispersionMode::Split,
-                                              double stop_scale = 1) {
-    const auto lens = std::make_shared<const Lens>(read_lens(name));
+[[nodiscard]] inline camera::LensCameraInput input_of(
+    const std::string& name, camera::DispersionMode dispersion = camera::DispersionMode::Split,
+    double stop_scale = 1) {
+    const auto lens = std::make_shared<const camera::Lens>(read_lens(name));
     const double radius =
         lens->prescription().surfaces[size_t(lens->stop())].semi_diameter_mm * stop_scale;
-    LensCameraInput in{.lens = lens, .iris = Iris(Disk{}, radius), .to_world = posed()};
+    camera::LensCameraInput in{
+        .lens = lens, .iris = camera::Iris(camera::Disk{}, radius), .to_world = posed()};
     in.film_mm = lens->film_mm();
-    in.entrance_pupil_mm = first_order(*lens, kLineD_nm).entrance_pupil_mm;
+    in.entrance_pupil_mm = camera::first_order(*lens, kLineD_nm).entrance_pupil_mm;
     in.dispersion = dispersion;
     return in;
 }
@@ -46,7 +47,7 @@ inline const std::string kTakumar = "takumar-50mm-f1.2", kGauss = "double-gauss-
     return bands;
 }
 
-[[nodiscard]] inline int first_lane(const CameraPath& path) {
+[[nodiscard]] inline int first_lane(const camera::CameraPath& path) {
     int lane = 0;
     while (lane < 3 && !path.lanes[lane]) ++lane;
     return lane;
@@ -68,16 +69,16 @@ inline const std::string kTakumar = "takumar-50mm-f1.2", kGauss = "double-gauss-
     return bands;
 }
 
-[[nodiscard]] inline FilmPoint film_point(V2f film, uint32_t index) {
+[[nodiscard]] inline camera::FilmPoint film_point(V2f film, uint32_t index) {
     return {film, Sampler(SamplerKind::Owen, 7, {0, 0, index})};
 }
-[[nodiscard]] inline V2f millimetres(const LensCameraInput& in, V2f film) {
+[[nodiscard]] inline V2f millimetres(const camera::LensCameraInput& in, V2f film) {
     return {(0.5f - film.x) * float(in.film_width_mm), (film.y - 0.5f) * float(in.film_height_mm)};
 }
 /// What sample() draws for that point.
 template <class V = f4>
-LensDraw<V> draw_of(const LensCamera& camera, const LensCameraInput& in, const FilmPoint& at,
-                    const Bands& bands) {
+camera::LensDraw<V> draw_of(const camera::LensCamera& camera, const camera::LensCameraInput& in,
+                            const camera::FilmPoint& at, const Bands& bands) {
     return camera.draw<V>(millimetres(in, at.film), at.sampler.get2(Dim::Lens), bands);
 }
 

@@ -35,11 +35,12 @@ inline const char* const kLensKinds[] = {"double-gauss-100mm-f2", "canon-14mm-f2
 
 /// The surfaces of a lens file; glass_of(medium, surface) makes what follows a surface, from 0.
 template <class GlassOf>
-[[nodiscard]] Prescription surfaces_of(const nlohmann::json& file, const GlassOf& glass_of) {
-    Prescription lens;
+[[nodiscard]] camera::Prescription surfaces_of(const nlohmann::json& file,
+                                               const GlassOf& glass_of) {
+    camera::Prescription lens;
     lens.name = file.at("name");
     for (const auto& item : file.at("surfaces")) {
-        LensSurface surface;
+        camera::LensSurface surface;
         if (!item.at("radius").is_null())
             surface.curvature_1_mm = 1 / item.at("radius").template get<double>();
         surface.conic = item.value("conic", 0.);
@@ -47,8 +48,8 @@ template <class GlassOf>
             for (const auto& [power, coefficient] : item.at("asphere").items())
                 surface.asphere.push_back({std::stod(power), coefficient.template get<double>()});
         const auto cylinder = item.value("cylinder", std::string());
-        if (cylinder == "x") surface.profile = Profile::CylinderX;
-        if (cylinder == "y") surface.profile = Profile::CylinderY;
+        if (cylinder == "x") surface.profile = camera::Profile::CylinderX;
+        if (cylinder == "y") surface.profile = camera::Profile::CylinderY;
         surface.thickness_mm = item.at("thickness");
         surface.semi_diameter_mm = item.at("semi_diameter");
         surface.stop = item.value("stop", false);
@@ -64,7 +65,7 @@ template <class GlassOf>
 }
 
 /// Surfaces only. Glasses are tables of the oracle's indices at the lines F, d and C.
-[[nodiscard]] inline Prescription read_lens(const std::string& name) {
+[[nodiscard]] inline camera::Prescription read_lens(const std::string& name) {
     const auto lines = read_oracle(name).at("refractive_indices");
     return surfaces_of(read_lens_file(name), [&](const nlohmann::json&, size_t surface) {
         IndexTable table;
@@ -105,9 +106,9 @@ template <class GlassOf>
 }
 
 /// Any lens of assets/lenses with what its file states, exact at the lines g, F, d and C.
-[[nodiscard]] inline Prescription read_any_lens(const std::string& name) {
+[[nodiscard]] inline camera::Prescription read_any_lens(const std::string& name) {
     const auto file = read_lens_file(name);
-    Prescription lens = surfaces_of(file, [](const nlohmann::json& medium, size_t) {
+    camera::Prescription lens = surfaces_of(file, [](const nlohmann::json& medium, size_t) {
         if (medium.contains("glass")) return read_used_glass(medium.at("glass"));
         return Glass{"as given", glass_like(medium.at("nd"), medium.at("vd"))};
     });

@@ -17,18 +17,19 @@ using Three = std::array<double, 3>;
 template <class V>
 [[nodiscard]] V lanes_of(const auto& f) {
     V out{};
-    for (int i = 0; i < 4; ++i) out[i] = static_cast<ScalarOf<V>>(f(i));
+    for (int i = 0; i < 4; ++i) out[i] = static_cast<camera::ScalarOf<V>>(f(i));
     return out;
 }
 /// The three numbers f(i) in lane i.
 template <class V>
-[[nodiscard]] Vec3<V> vectors_of(const auto& f) {
+[[nodiscard]] camera::Vec3<V> vectors_of(const auto& f) {
     return {lanes_of<V>([&](int i) { return f(i)[0]; }),
             lanes_of<V>([&](int i) { return f(i)[1]; }),
             lanes_of<V>([&](int i) { return f(i)[2]; })};
 }
 [[nodiscard]] inline Three at_lane(const auto& v, int i) {
-    return {double(lane(v.x, i)), double(lane(v.y, i)), double(lane(v.z, i))};
+    return {double(camera::lane(v.x, i)), double(camera::lane(v.y, i)),
+            double(camera::lane(v.z, i))};
 }
 
 [[nodiscard]] inline Three plus(Three a, Three b, double scale = 1) {
@@ -44,14 +45,14 @@ template <class V>
     return plus({}, a, 1 / length(a));
 }
 
-[[nodiscard]] inline SurfaceRange whole(const Lens& lens) {
+[[nodiscard]] inline camera::SurfaceRange whole(const camera::Lens& lens) {
     return {0, lens.last()};
 }
 
 /// A ray with the same in all lanes; z counts from a surface's vertex.
 template <class V>
-[[nodiscard]] LensRay<V> ray_of(Three origin, Three direction, int counted_from = 0) {
-    LensRay<V> ray;
+[[nodiscard]] camera::LensRay<V> ray_of(Three origin, Three direction, int counted_from = 0) {
+    camera::LensRay<V> ray;
     ray.origin = vectors_of<V>([&](int) { return origin; });
     ray.direction = vectors_of<V>([&](int) { return unit(direction); });
     ray.counted_from = counted_from;
@@ -62,9 +63,9 @@ template <class V>
 [[nodiscard]] inline Glass constant_glass(double n) {
     return {"constant", IndexSeries{{{n, 0}}}};
 }
-[[nodiscard]] inline LensSurface surface_of(double curvature_1_mm, double thickness_mm, double n,
-                                            double semi_diameter_mm = 100) {
-    LensSurface out;
+[[nodiscard]] inline camera::LensSurface surface_of(double curvature_1_mm, double thickness_mm,
+                                                    double n, double semi_diameter_mm = 100) {
+    camera::LensSurface out;
     out.curvature_1_mm = curvature_1_mm;
     out.thickness_mm = thickness_mm;
     out.semi_diameter_mm = semi_diameter_mm;
@@ -72,18 +73,19 @@ template <class V>
     return out;
 }
 /// The first surface becomes the stop where there is none.
-[[nodiscard]] inline Lens lens_of(std::vector<LensSurface> surfaces) {
+[[nodiscard]] inline camera::Lens lens_of(std::vector<camera::LensSurface> surfaces) {
     bool stop = false;
     for (const auto& surface : surfaces) stop = stop || surface.stop;
     if (!stop) surfaces.front().stop = true;
-    Prescription out;
+    camera::Prescription out;
     out.surfaces = std::move(surfaces);
-    return Lens(std::move(out));
+    return camera::Lens(std::move(out));
 }
 
 /// Through the stop's neighbourhood from a field of some degrees: passes all of kLensKinds.
-[[nodiscard]] inline LensRay<d4> usual_ray(const Lens& lens, Random& random) {
-    const FirstOrder x = first_order(lens, kLineD_nm, Section::X), y = first_order(lens, kLineD_nm);
+[[nodiscard]] inline camera::LensRay<d4> usual_ray(const camera::Lens& lens, Random& random) {
+    const camera::FirstOrder x = camera::first_order(lens, kLineD_nm, camera::Section::X),
+                             y = camera::first_order(lens, kLineD_nm);
     const double radius = 0.2 * std::fabs(x.entrance_pupil_diameter_mm);
     const auto part = [&random] { return 2. * random.next() - 1; };
     const Three at_pupil{part() * radius, part() * radius, y.entrance_pupil_mm};

@@ -37,9 +37,9 @@ struct TextFault {
 
 class LensText : public testing::Test {
   protected:
-    LensFile read(const std::string& name, const std::string& bytes) {
+    io::LensFile read(const std::string& name, const std::string& bytes) {
         write_text(folder_ / name, bytes);
-        return load_lens((folder_ / name).string());
+        return io::load_lens((folder_ / name).string());
     }
     std::string refused(const std::string& name, const std::string& text) {
         return refusal([&] { (void)read(name, text); });

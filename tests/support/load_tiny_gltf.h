@@ -11,14 +11,14 @@
 
 namespace petzval {
 
-inline GltfFile load(const TinyGltf& file) {
+inline io::GltfFile load(const TinyGltf& file) {
     const TempFolder folder;
-    return load_gltf(file.save_glb(folder.path / "test.glb"));
+    return io::load_gltf(file.save_glb(folder.path / "test.glb"));
 }
 
 /// The one mesh of a file's scene.
 inline Mesh load_mesh(const TinyGltf& file) {
-    GltfFile loaded = load(file);
+    io::GltfFile loaded = load(file);
     EXPECT_EQ(loaded.scene.meshes.size(), 1u);
     return loaded.scene.meshes.empty() ? Mesh{} : std::move(loaded.scene.meshes[0]);
 }
@@ -30,9 +30,9 @@ inline bool contains_line(const std::vector<std::string>& lines, const std::stri
 }
 
 /// Whether a file lists that extension, and it is rendered.
-inline bool renders(const GltfFile& file, const std::string& extension) {
-    for (const ExtensionInFile& one : file.holds.extensions)
-        if (one.name == extension) return one.use == ExtensionUse::Rendered;
+inline bool renders(const io::GltfFile& file, const std::string& extension) {
+    for (const io::ExtensionInFile& one : file.holds.extensions)
+        if (one.name == extension) return one.use == io::ExtensionUse::Rendered;
     return false;
 }
 

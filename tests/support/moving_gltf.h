@@ -53,11 +53,11 @@ class SavedGltf {
     explicit SavedGltf(const TinyGltf& file) : path_(file.save_glb(folder_.path / "moves.glb")) {}
 
     /// open_s: how long the shutter is open about that time; 0: a still.
-    [[nodiscard]] GltfFile at(double time_s, double open_s = 0, bool repeats = true) const {
-        GltfChoices choices;
-        choices.animation = AnimationChoice{time_s, {}, repeats, open_s};
-        PictureBudget pictures;
-        return load_gltf(path_, FileScope::Anywhere, pictures, choices);
+    [[nodiscard]] io::GltfFile at(double time_s, double open_s = 0, bool repeats = true) const {
+        io::GltfChoices choices;
+        choices.animation = io::AnimationChoice{time_s, {}, repeats, open_s};
+        io::PictureBudget pictures;
+        return io::load_gltf(path_, io::FileScope::Anywhere, pictures, choices);
     }
 
   private:

@@ -48,8 +48,9 @@ namespace petzval::test {
 }
 
 /// before: the surface in front; nullptr for the first.
-[[nodiscard]] inline LensSurface nasty_surface(Random& random, const LensSurface* before) {
-    LensSurface out = random_surface(random);
+[[nodiscard]] inline camera::LensSurface nasty_surface(Random& random,
+                                                       const camera::LensSurface* before) {
+    camera::LensSurface out = random_surface(random);
     const double sign = one_of(random, {-1, 1});
     if (by_chance(random, 0.4f))
         out.curvature_1_mm =
@@ -77,7 +78,7 @@ namespace petzval::test {
 }
 
 /// Numbers of any size, where no file may say so.
-inline void make_wild(Random& random, LensSurface& surface) {
+inline void make_wild(Random& random, camera::LensSurface& surface) {
     for (double* number : {&surface.curvature_1_mm, &surface.conic, &surface.thickness_mm,
                            &surface.semi_diameter_mm})
         if (by_chance(random, 0.3f)) *number = any_number(random);
@@ -87,11 +88,11 @@ inline void make_wild(Random& random, LensSurface& surface) {
 
 /// Half of them have a plane of one medium for a stop, as a lens file must; of the others any
 /// surface is the stop. Some stops are closed. wild: some numbers are of any size.
-[[nodiscard]] inline Prescription nasty_prescription(Random& random, bool wild) {
-    Prescription out;
+[[nodiscard]] inline camera::Prescription nasty_prescription(Random& random, bool wild) {
+    camera::Prescription out;
     const double most = by_chance(random, 0.01f) ? 250 : by_chance(random, 0.1f) ? 40 : 12;
     out.surfaces.resize(1 + size_t(random.next() * most));
-    const LensSurface* before = nullptr;
+    const camera::LensSurface* before = nullptr;
     for (auto& surface : out.surfaces) {
         surface = by_chance(random, 0.5f) ? nasty_surface(random, before) : random_surface(random);
         if (wild && by_chance(random, 0.2f)) make_wild(random, surface);
@@ -99,13 +100,13 @@ inline void make_wild(Random& random, LensSurface& surface) {
     }
     const auto any_surface = [&] { return size_t(random.next() * float(out.surfaces.size())); };
     const size_t at = any_surface();
-    LensSurface& stop = out.surfaces[at];
+    camera::LensSurface& stop = out.surfaces[at];
     stop.stop = true;
     if (by_chance(random, 0.5f)) {
         stop.curvature_1_mm = 0;
         stop.conic = 0;
         stop.asphere.clear();
-        stop.profile = Profile::Rotational;
+        stop.profile = camera::Profile::Rotational;
         stop.glass = at > 0 ? out.surfaces[at - 1].glass : std::nullopt;
     }
     if (by_chance(random, 0.05f)) stop.semi_diameter_mm = one_of(random, {0, -0., -1, 1e-30});
@@ -118,7 +119,7 @@ inline void make_wild(Random& random, LensSurface& surface) {
 
 /// As our lens file says it, with as many digits as a double has; what no file may say, such as a
 /// formula of a glass, in the same manner.
-[[nodiscard]] inline std::string text_of(const Prescription& lens) {
+[[nodiscard]] inline std::string text_of(const camera::Prescription& lens) {
     const auto pairs = [](const auto& terms) {
         std::string out;
         for (const auto& [a, b] : terms)
@@ -145,7 +146,7 @@ inline void make_wild(Random& random, LensSurface& surface) {
                            (*lens.focus_group)[1]);
     out += "\"surfaces\": [";
     const char* separator = "\n";
-    for (const LensSurface& s : lens.surfaces) {
+    for (const camera::LensSurface& s : lens.surfaces) {
         out += fmt::format(
             "{}  {{\"radius\": {}, \"thickness\": {}, \"medium\": {}, \"semi_diameter\": {}",
             separator, s.curvature_1_mm == 0 ? "null" : fmt::format("{}", 1 / s.curvature_1_mm),
@@ -155,9 +156,9 @@ inline void make_wild(Random& random, LensSurface& surface) {
         for (const auto& [power, a] : s.asphere)
             terms += fmt::format("{}\"{}\": {}", terms.empty() ? "" : ", ", power, a);
         if (!terms.empty()) out += fmt::format(", \"asphere\": {{{}}}", terms);
-        if (s.profile != Profile::Rotational)
-            out +=
-                s.profile == Profile::CylinderX ? ", \"cylinder\": \"x\"" : ", \"cylinder\": \"y\"";
+        if (s.profile != camera::Profile::Rotational)
+            out += s.profile == camera::Profile::CylinderX ? ", \"cylinder\": \"x\""
+                                                           : ", \"cylinder\": \"y\"";
         if (s.stop) out += ", \"stop\": true";
         out += "}";
         separator = ",\n";
@@ -166,9 +167,10 @@ inline void make_wild(Random& random, LensSurface& surface) {
 }
 
 /// Nasty lens for odd i, random one for even; nothing where the prescription is refused.
-[[nodiscard]] inline std::optional<Lens> some_lens(Random& random, int i) {
+[[nodiscard]] inline std::optional<camera::Lens> some_lens(Random& random, int i) {
     try {
-        return Lens(i % 2 ? nasty_prescription(random, i % 4 == 1) : random_prescription(random));
+        return camera::Lens(i % 2 ? nasty_prescription(random, i % 4 == 1)
+                                  : random_prescription(random));
     } catch (const std::invalid_argument&) {
         return std::nullopt;
     }

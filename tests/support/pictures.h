@@ -12,8 +12,8 @@
 namespace petzval::test {
 
 /// A whole frame of these channels; pixels may be given, else they are 0.
-[[nodiscard]] inline Picture picture(int width, int height, std::vector<std::string> channels,
-                                     std::vector<float> pixels = {}) {
+[[nodiscard]] inline io::Picture picture(int width, int height, std::vector<std::string> channels,
+                                         std::vector<float> pixels = {}) {
     if (pixels.empty()) pixels.resize(size_t(width) * height * channels.size());
     return {{.width = width,
              .height = height,
@@ -25,8 +25,8 @@ namespace petzval::test {
 }
 
 /// Every row of a picture.
-[[nodiscard]] inline Picture held(const PictureRows& rows) {
-    Picture p{rows.layout, {}};
+[[nodiscard]] inline io::Picture held(const io::PictureRows& rows) {
+    io::Picture p{rows.layout, {}};
     const size_t row = size_t(p.width) * p.channels.size();
     p.pixels.resize(row * size_t(p.height));
     for (int y = 0; y < p.height; ++y) rows.row(y, p.pixels.data() + size_t(y) * row);
@@ -34,8 +34,8 @@ namespace petzval::test {
 }
 
 /// The same with random values in [0, 1).
-[[nodiscard]] inline Picture noise(int width, int height, std::vector<std::string> channels) {
-    Picture p = picture(width, height, std::move(channels));
+[[nodiscard]] inline io::Picture noise(int width, int height, std::vector<std::string> channels) {
+    io::Picture p = picture(width, height, std::move(channels));
     std::minstd_rand random(7);
     for (float& value : p.pixels) value = float(random() % 4096) / 4096.f;
     return p;

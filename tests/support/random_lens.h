@@ -16,14 +16,15 @@ namespace petzval::test {
     return a + (b - a) * random.next();
 }
 
-[[nodiscard]] inline LensSurface random_surface(Random& random) {
-    LensSurface out;
+[[nodiscard]] inline camera::LensSurface random_surface(Random& random) {
+    camera::LensSurface out;
     if (random.next() < 0.9f) out.curvature_1_mm = 1 / between(random, 3, 100);
     if (random.next() < 0.5f) out.curvature_1_mm *= -1;
     if (random.next() < 0.1f) out.curvature_1_mm *= 1e-6;
     if (random.next() < 0.3f) out.conic = between(random, -6, 6);
     if (random.next() < 0.2f)
-        out.profile = random.next() < 0.5f ? Profile::CylinderX : Profile::CylinderY;
+        out.profile =
+            random.next() < 0.5f ? camera::Profile::CylinderX : camera::Profile::CylinderY;
     if (random.next() < 0.3f) {
         // Each term adds up to 1 mm at 8 mm, or, where r is 30 mm, up to 10^9 mm.
         const int terms = 1 + int(random.next() * 5);
@@ -39,8 +40,8 @@ namespace petzval::test {
 }
 
 /// The stop is any of its surfaces.
-[[nodiscard]] inline Prescription random_prescription(Random& random) {
-    Prescription out;
+[[nodiscard]] inline camera::Prescription random_prescription(Random& random) {
+    camera::Prescription out;
     out.surfaces.resize(1 + size_t(random.next() * 12));
     for (auto& surface : out.surfaces) surface = random_surface(random);
     out.surfaces[size_t(random.next() * float(out.surfaces.size()))].stop = true;
@@ -75,17 +76,18 @@ struct Line {
 }
 
 template <class V>
-[[nodiscard]] LensRay<V> rays_of(const std::array<Line, 4>& lines) {
-    LensRay<V> ray;
+[[nodiscard]] camera::LensRay<V> rays_of(const std::array<Line, 4>& lines) {
+    camera::LensRay<V> ray;
     ray.origin = vectors_of<V>([&](int i) { return lines[size_t(i)].origin; });
     ray.direction = vectors_of<V>([&](int i) { return lines[size_t(i)].direction; });
     return ray;
 }
 /// With derivatives by the origin's x and y.
-[[nodiscard]] inline LensRay<Dual<f4>> with_derivatives(const LensRay<f4>& ray) {
-    using D = Dual<f4>;
+[[nodiscard]] inline camera::LensRay<camera::Dual<f4>> with_derivatives(
+    const camera::LensRay<f4>& ray) {
+    using D = camera::Dual<f4>;
     const auto& [at, along] = std::pair(ray.origin, ray.direction);
-    LensRay<D> out;
+    camera::LensRay<D> out;
     out.origin = {D{at.x, splat(1), {}}, D{at.y, {}, splat(1)}, D{at.z}};
     out.direction = {D{along.x}, D{along.y}, D{along.z}};
     return out;
@@ -94,19 +96,20 @@ template <class V>
 /// What of that which holds for every ray that has been traced does not hold; empty where all
 /// does. tolerance: of the direction's length.
 template <class N>
-[[nodiscard]] std::string fault_of(const LensRay<N>& ray, const Lens& lens, Towards towards,
-                                   double tolerance) {
-    const auto origin = value_of(ray.origin), direction = value_of(ray.direction);
-    for (int i = 0; i < NumberTraits<N>::lanes; ++i) {
+[[nodiscard]] std::string fault_of(const camera::LensRay<N>& ray, const camera::Lens& lens,
+                                   camera::Towards towards, double tolerance) {
+    const auto origin = camera::value_of(ray.origin), direction = camera::value_of(ray.direction);
+    for (int i = 0; i < camera::NumberTraits<N>::lanes; ++i) {
         const Three at = at_lane(origin, i), along = at_lane(direction, i);
         if (!std::isfinite(at[0] + at[1] + at[2])) return "a point that is not finite";
         if (!(std::fabs(length(along) - 1) <= tolerance))
             return "a direction of length " + std::to_string(length(along));
-        const int status = int(lane(ray.status_code, i)), end = int(lane(ray.end_surface, i));
+        const int status = int(camera::lane(ray.status_code, i)),
+                  end = int(camera::lane(ray.end_surface, i));
         if (status < 0 || status > 3) return "no status";
         if (end < 0 || end >= lens.size()) return "an end on no surface";
         if (status == 0) continue;
-        if (at != Three{} || along != Three{0, 0, towards == Towards::Film ? 1. : -1.})
+        if (at != Three{} || along != Three{0, 0, towards == camera::Towards::Film ? 1. : -1.})
             return "a blocked ray off the axis";
     }
     return {};

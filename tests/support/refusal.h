@@ -15,7 +15,7 @@ template <class Action>
 std::string refusal(Action action) {
     try {
         action();
-    } catch (const InputError& error) {
+    } catch (const io::InputError& error) {
         return error.what();
     }
     ADD_FAILURE() << "was not refused";

@@ -7,9 +7,9 @@
 namespace petzval::test {
 
 /// Wavelengths whatever the scene; what is noticed is not told.
-inline Observer observer_of(SpectralRequest request, const Scene& scene = Scene()) {
-    request.mode = SpectralMode::Wavelengths;
-    return set_up_spectra(request, scene, "", false, [](const std::string&) {}).observer;
+inline Observer observer_of(apps::SpectralRequest request, const Scene& scene = Scene()) {
+    request.mode = apps::SpectralMode::Wavelengths;
+    return apps::set_up_spectra(request, scene, "", false, [](const std::string&) {}).observer;
 }
 
 }  // namespace petzval::test

@@ -19,15 +19,16 @@ namespace petzval::test {
 }
 
 /// Part of the film of 16 x 16 pixels about a point.
-[[nodiscard]] inline FilmCell cell_about(V2f film, V2i frame_px) {
+[[nodiscard]] inline camera::FilmCell cell_about(V2f film, V2i frame_px) {
     const V2f half = V2f(8) / V2f(frame_px);
     return {film - half, film + half};
 }
 
 /// Targets made ready for a part of the film, the later the more often taken.
-[[nodiscard]] inline TargetCell listed_in(const TargetCamera& camera, const FilmCell& part,
-                                          V2i frame_px, const std::vector<Target>& targets) {
-    TargetCell out{camera.map(part), {}};
+[[nodiscard]] inline camera::TargetCell listed_in(const camera::TargetCamera& camera,
+                                                  const camera::FilmCell& part, V2i frame_px,
+                                                  const std::vector<camera::Target>& targets) {
+    camera::TargetCell out{camera.map(part), {}};
     float sum = 0;
     for (size_t i = 0; out.map && i < targets.size(); ++i) {
         auto listed = camera.listed(targets[i], *out.map, frame_px);
@@ -36,13 +37,13 @@ namespace petzval::test {
         sum += listed->chance;
         out.targets.push_back(*listed);
     }
-    for (ListedTarget& listed : out.targets) listed.chance /= sum;
+    for (camera::ListedTarget& listed : out.targets) listed.chance /= sum;
     return out;
 }
 
 /// The same targets for all of the film.
-[[nodiscard]] inline std::shared_ptr<TargetGrid> grid_of(TargetCell cell) {
-    auto out = std::make_shared<TargetGrid>();
+[[nodiscard]] inline std::shared_ptr<camera::TargetGrid> grid_of(camera::TargetCell cell) {
+    auto out = std::make_shared<camera::TargetGrid>();
     out->cells = {1, 1};
     out->lists.push_back(std::move(cell));
     return out;
@@ -54,7 +55,7 @@ struct Pixel {
     V2f frame_px;
     V2f middle;  ///< as FilmPoint has it
 
-    [[nodiscard]] FilmPoint draw(const Sampler& sampler) const {
+    [[nodiscard]] camera::FilmPoint draw(const Sampler& sampler) const {
         const V2f offset = filter->sample(sampler.get2(Dim::Film));
         return {middle + offset / frame_px, sampler, {filter, offset, frame_px}};
     }
@@ -68,10 +69,10 @@ struct Pixel {
 }
 
 /// A ray of a film point: that of draw number i, or of the first after it that passes.
-[[nodiscard]] inline Ray ray_of(const Camera& camera, V2f film, uint32_t i) {
+[[nodiscard]] inline Ray ray_of(const camera::Camera& camera, V2f film, uint32_t i) {
     for (;; ++i) {
-        const FilmPoint at{film, Sampler(SamplerKind::Owen, 5, {0, 0, i})};
-        const CameraSample sample = camera.sample(at, Bands::rgb());
+        const camera::FilmPoint at{film, Sampler(SamplerKind::Owen, 5, {0, 0, i})};
+        const camera::CameraSample sample = camera.sample(at, Bands::rgb());
         if (!sample.empty()) return sample[0].ray;
     }
 }
@@ -84,30 +85,31 @@ struct PixelLight {
 };
 /// light: of a ray. bands_of: of a sampler. samples: a multiple of a batch.
 template <class Light, class BandsOf>
-PixelLight light_of(const TargetCamera& camera, const TargetCell& cell, const Pixel& pixel,
-                    uint32_t seed, uint32_t samples, const BandsOf& bands_of, const Light& light) {
+PixelLight light_of(const camera::TargetCamera& camera, const camera::TargetCell& cell,
+                    const Pixel& pixel, uint32_t seed, uint32_t samples, const BandsOf& bands_of,
+                    const Light& light) {
     PixelLight out;
-    std::array<FilmPoint, kMostFilmPoints> points;
-    std::array<Bands, kMostFilmPoints> bands;
-    std::array<const TargetCell*, kMostFilmPoints> cells{};
+    std::array<camera::FilmPoint, camera::kMostFilmPoints> points;
+    std::array<Bands, camera::kMostFilmPoints> bands;
+    std::array<const camera::TargetCell*, camera::kMostFilmPoints> cells{};
     if (!cell.empty()) cells.fill(&cell);
-    std::array<CameraSample, kMostFilmPoints> ordinary, to_targets;
-    for (uint32_t first = 0; first < samples; first += kMostFilmPoints) {
-        for (uint32_t k = 0; k < kMostFilmPoints; ++k) {
+    std::array<camera::CameraSample, camera::kMostFilmPoints> ordinary, to_targets;
+    for (uint32_t first = 0; first < samples; first += camera::kMostFilmPoints) {
+        for (uint32_t k = 0; k < camera::kMostFilmPoints; ++k) {
             const Sampler sampler(SamplerKind::Independent, seed, {7, 9, first + k});
             bands[k] = bands_of(sampler);
             points[k] = pixel.draw(sampler);
         }
         camera.sample_beside(points, bands, cells, ordinary);
         if (!cell.empty()) camera.sample_targets(points, bands, cells, to_targets);
-        for (uint32_t k = 0; k < kMostFilmPoints; ++k) {
+        for (uint32_t k = 0; k < camera::kMostFilmPoints; ++k) {
             double sum = 0;
-            const auto add = [&](const CameraPath& path) {
+            const auto add = [&](const camera::CameraPath& path) {
                 sum +=
                     double(hsum(path.weight)) * double(light(path.ray)) * double(path.mis_weight);
             };
-            for (const CameraPath& path : ordinary[k]) add(path);
-            for (const CameraPath& path : to_targets[k]) add(path), ++out.sent;
+            for (const camera::CameraPath& path : ordinary[k]) add(path);
+            for (const camera::CameraPath& path : to_targets[k]) add(path), ++out.sent;
             out.light.add(sum);
         }
     }

@@ -10,13 +10,13 @@
 namespace petzval::test {
 
 struct TracedWorld : World {
-    std::unique_ptr<PathTracer<>> tracer;
+    std::unique_ptr<integrator::PathTracer<>> tracer;
 
-    void finish(int max_depth = PathOptions().max_depth) {
+    void finish(int max_depth = integrator::PathOptions().max_depth) {
         World::finish();
-        PathOptions options;
+        integrator::PathOptions options;
         options.max_depth = max_depth;
-        tracer = std::make_unique<PathTracer<>>(scene, *bvh, *lights, options);
+        tracer = std::make_unique<integrator::PathTracer<>>(scene, *bvh, *lights, options);
     }
 };
 

@@ -22,7 +22,7 @@
 #include "io/image/symmetric_mse.h"
 #include "io/plot/plot.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 struct DiffOptions {
@@ -31,7 +31,7 @@ struct DiffOptions {
     RenderOrder order;
 };
 
-void print_layer(const LayerDifference& d) {
+void print_layer(const io::LayerDifference& d) {
     std::string line = d.layer + ": ";
     if (d.symmetric_mse) line += fmt::format("symmetric MSE {:.6g}, ", *d.symmetric_mse);
     line +=
@@ -43,22 +43,22 @@ void print_layer(const LayerDifference& d) {
 }
 
 /// Throws where a layer is further from the reference than it may be.
-void require_within(double limit, const DiffOptions& o, const LayerDifference& d) {
+void require_within(double limit, const DiffOptions& o, const io::LayerDifference& d) {
     if (d.not_finite > 0)
-        throw InputError(o.a, "", "{}: {} values are not finite in it or in {}", d.layer,
-                         d.not_finite, o.b);
+        throw io::InputError(o.a, "", "{}: {} values are not finite in it or in {}", d.layer,
+                             d.not_finite, o.b);
     if (d.rmse > limit)
-        throw InputError(o.a, "", "{}: RMSE {:.6g} against {} is above {:g}", d.layer, d.rmse, o.b,
-                         limit);
+        throw io::InputError(o.a, "", "{}: RMSE {:.6g} against {} is above {:g}", d.layer, d.rmse,
+                             o.b, limit);
 }
 
 void diff_command(const DiffOptions& o) {
-    const std::vector<LayerDifference> layers =
-        compare_files(o.a, o.b, o.order.render.scene.pictures());
-    for (const LayerDifference& layer : layers) print_layer(layer);
+    const std::vector<io::LayerDifference> layers =
+        io::compare_files(o.a, o.b, o.order.render.scene.pictures());
+    for (const io::LayerDifference& layer : layers) print_layer(layer);
     std::fflush(stdout);  // the result comes before a complaint
     if (!o.fail_above) return;
-    for (const LayerDifference& layer : layers) require_within(*o.fail_above, o, layer);
+    for (const io::LayerDifference& layer : layers) require_within(*o.fail_above, o, layer);
 }
 
 void add_diff(CLI::App& image) {
@@ -75,7 +75,7 @@ void add_diff(CLI::App& image) {
         "reference's mid-grey: 0 for equal pictures, {:g} at most, and the same for light that is "
         "lost and light that is added. It is for light: the layers RGB and Y of an .exr. relative "
         "MSE is the mean of (a - b)^2 / (b^2 + {}); the peak of PSNR is the largest value of b.",
-        kSymmetricFloorShare, kMostSymmetricMse, kRelativeMseEpsilon));
+        io::kSymmetricFloorShare, io::kMostSymmetricMse, io::kRelativeMseEpsilon));
     diff->callback([options] { diff_command(*options); });
 }
 
@@ -87,16 +87,16 @@ struct SpectrumOptions {
 void spectrum_command(const SpectrumOptions& o) {
     const V2i at = parse_pixel("pixel", o.pixel);
     if (!o.plot.empty()) {
-        refuse_overwriting({{"-o", o.plot}}, {{"the picture to read", o.in}});
-        check_plot(o.plot);
+        io::refuse_overwriting({{"-o", o.plot}}, {{"the picture to read", o.in}});
+        io::check_plot(o.plot);
     }
-    PictureBudget pictures = o.order.render.scene.pictures();
-    const auto spectrum = spectrum_of_pixel(read_picture(o.in, pictures), o.in, at.x, at.y);
+    io::PictureBudget pictures = o.order.render.scene.pictures();
+    const auto spectrum = io::spectrum_of_pixel(io::read_picture(o.in, pictures), o.in, at.x, at.y);
     if (!o.plot.empty())
-        write_plot(o.plot, {.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),
-                            .x_label = "wavelength (nm)",
-                            .y_label = "spectral radiance (W m⁻² sr⁻¹ nm⁻¹)",
-                            .series = {{spectrum, PlotStyle::Steps, ""}}});
+        io::write_plot(o.plot, {.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),
+                                .x_label = "wavelength (nm)",
+                                .y_label = "spectral radiance (W m⁻² sr⁻¹ nm⁻¹)",
+                                .series = {{spectrum, io::PlotStyle::Steps, ""}}});
     for (const auto& [nm, value] : spectrum) fmt::print("{:.7g} {:.9g}\n", nm, value);
 }
 
@@ -123,4 +123,4 @@ void add_image_commands(CLI::App& app) {
     add_spectrum(*image);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -18,7 +18,7 @@
 #include "io/image/picture_files.h"
 #include "io/image/symmetric_mse.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 struct NoiseOptions {
@@ -29,7 +29,7 @@ struct NoiseOptions {
 
 /// Channels of a picture that states its errors.
 struct StatedErrors {
-    const Picture& picture;
+    const io::Picture& picture;
     std::array<int, 3> colour{}, error{};
     int samples = -1;
 
@@ -40,7 +40,7 @@ struct StatedErrors {
             picture.pixels[pixel * picture.channels.size() + static_cast<size_t>(channel)]);
     }
     [[nodiscard]] double floor() const {
-        SymmetricFloor out;
+        io::SymmetricFloor out;
         for (int y = 0; y < picture.height; ++y)
             for (int x = 0; x < picture.width; ++x)
                 out.add(double(luminance({float(at(x, y, colour[0])), float(at(x, y, colour[1])),
@@ -49,23 +49,23 @@ struct StatedErrors {
     }
 };
 
-StatedErrors stated_errors(const Picture& picture, const std::string& file) {
+StatedErrors stated_errors(const io::Picture& picture, const std::string& file) {
     StatedErrors out{picture};
     for (size_t c = 0; c < 3; ++c) {
         const char* const names[] = {"R", "G", "B"};
-        out.colour[c] = channel_index(picture, names[c]);
-        out.error[c] = channel_index(picture, std::string("stderr.") + names[c]);
+        out.colour[c] = io::channel_index(picture, names[c]);
+        out.error[c] = io::channel_index(picture, std::string("stderr.") + names[c]);
         if (out.colour[c] < 0 || out.error[c] < 0)
-            throw InputError(file, "",
-                             "states no errors: render it with ⟨noise⟩ or ⟨bins⟩, as .exr");
+            throw io::InputError(file, "",
+                                 "states no errors: render it with ⟨noise⟩ or ⟨bins⟩, as .exr");
     }
-    out.samples = channel_index(picture, "samples.N");
+    out.samples = io::channel_index(picture, "samples.N");
     return out;
 }
 
 void noise_command(const NoiseOptions& o) {
-    PictureBudget pictures = o.order.render.scene.pictures();
-    const Picture picture = read_picture(o.in, pictures);
+    io::PictureBudget pictures = o.order.render.scene.pictures();
+    const io::Picture picture = io::read_picture(o.in, pictures);
     const StatedErrors stated = stated_errors(picture, o.in);
     const double floor2 = std::pow(stated.floor(), 2);
     const int across = std::min(o.regions, picture.width),
@@ -84,7 +84,7 @@ void noise_command(const NoiseOptions& o) {
             }
         const double pixels = double(x1 - x0) * double(y1 - y0);
         std::string text =
-            fmt::format("{:<24} noise {:>7}", name, percent(std::sqrt(squares / pixels)));
+            fmt::format("{:<24} noise {:>7}", name, io::percent(std::sqrt(squares / pixels)));
         if (stated.samples >= 0) text += fmt::format("  samples {:.0f}", samples / pixels);
         print_line(text);
     };
@@ -116,4 +116,4 @@ void add_noise(CLI::App& image) {
     noise->callback([options] { noise_command(*options); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

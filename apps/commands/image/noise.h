@@ -6,9 +6,9 @@ namespace CLI {
 class App;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Declares the command that prints the noise that a picture states of itself, by region.
 void add_noise(CLI::App& image);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -19,7 +19,7 @@
 #include "io/image/output.h"
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 struct ViewRequest {
@@ -28,18 +28,20 @@ struct ViewRequest {
 };
 
 /// Indices of R, G and B, or of Y as each of them: below 0 where there is none.
-std::array<int, 3> colours_of(const Picture& p) {
-    const int grey = channel_index(p, "Y");
-    const auto from = [&](const char* name) { return grey < 0 ? channel_index(p, name) : grey; };
+std::array<int, 3> colours_of(const io::Picture& p) {
+    const int grey = io::channel_index(p, "Y");
+    const auto from = [&](const char* name) {
+        return grey < 0 ? io::channel_index(p, name) : grey;
+    };
     return {from("R"), from("G"), from("B")};
 }
 
 /// Luminances of the pixels that show something, for exposure_for().
-std::vector<double> luminances_of(const Picture& p) {
+std::vector<double> luminances_of(const io::Picture& p) {
     std::vector<double> out;
     const std::array<int, 3> at = colours_of(p);
     if (*std::min_element(at.begin(), at.end()) < 0) return out;
-    const int alpha = channel_index(p, "A");
+    const int alpha = io::channel_index(p, "A");
     for (auto pixel = p.pixels.begin(); pixel != p.pixels.end(); pixel += p.channels.size()) {
         const double light = double(luminance(Rgb(pixel[at[0]], pixel[at[1]], pixel[at[2]])));
         const double opaque = alpha < 0 ? 1 : double(pixel[alpha]);
@@ -53,13 +55,13 @@ void view_command(ViewRequest& o) {
     DisplayRequest& asked = o.order.render.display;
     const auto exposure = asked.exposure.value_or(ExposureRequest());
     if (const std::string told = resolve_display(asked); !told.empty()) print_notice(told);
-    DisplayOptions display{exposure.ev, find_view(asked.view, asked.config), asked.config};
-    const std::vector<NamedFile> outputs{{"-o", o.out}};
-    refuse_overwriting(outputs, {{"the picture to show", o.in}});
-    refuse_overwriting(outputs, input_files(asked));
-    refuse_overwriting(outputs, own_files());
-    PictureBudget pictures = o.order.render.scene.pictures();
-    Picture picture = read_picture(o.in, pictures);
+    io::DisplayOptions display{exposure.ev, io::find_view(asked.view, asked.config), asked.config};
+    const std::vector<io::NamedFile> outputs{{"-o", o.out}};
+    io::refuse_overwriting(outputs, {{"the picture to show", o.in}});
+    io::refuse_overwriting(outputs, input_files(asked));
+    io::refuse_overwriting(outputs, own_files());
+    io::PictureBudget pictures = o.order.render.scene.pictures();
+    io::Picture picture = io::read_picture(o.in, pictures);
     if (picture.for_display)
         print_notice(
             fmt::format("warning: {} holds values for a display already, and goes through the view "
@@ -70,7 +72,7 @@ void view_command(ViewRequest& o) {
         print_notice(fmt::format("exposure: {0} EV (--exposure {0})", display.exposure_ev));
     }
     picture.metadata.emplace_back(kDisplayHash, display_hash(display_facts(display)));
-    write_output(o.out, picture, display);
+    io::write_output(o.out, picture, display);
 }
 
 }  // namespace
@@ -87,4 +89,4 @@ void add_view(CLI::App& image) {
     view->callback([options] { view_command(*options); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,9 +6,9 @@ namespace CLI {
 class App;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Declares the command that shows a linear picture on a display.
 void add_view(CLI::App& image);
 
-}  // namespace petzval
+}  // namespace petzval::apps

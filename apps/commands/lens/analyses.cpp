@@ -12,14 +12,14 @@
 #include "camera/bench/analysis.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
-void append(std::vector<BundleRay>& all, const std::vector<BundleRay>& more) {
+void append(std::vector<camera::BundleRay>& all, const std::vector<camera::BundleRay>& more) {
     all.insert(all.end(), more.begin(), more.end());
 }
 
-void print_spot(double field_deg, const char* line, const SpotSize& size) {
+void print_spot(double field_deg, const char* line, const camera::SpotSize& size) {
     fmt::print("{:>10.4g} {:>6} {:>12.6f} {:>12.6f} {:>12.4f}\n", field_deg, line,
                shown(size.centroid_mm[0]), shown(size.centroid_mm[1]), kMicrons * size.rms_mm);
 }
@@ -29,29 +29,29 @@ Found spot_analysis(const AnalysisOptions& o) {
     const FieldSetup setup = set_up_lit(o.field, {0, 0.7, 1});
     Found out;
     out.names = {"field_deg", "nm", "x_mm", "y_mm"};
-    std::vector<PlotSeries> series;
-    for (const SpectralLine& line : kSpectralLines)
-        series.push_back({{}, PlotStyle::Dots, line.name});
+    std::vector<io::PlotSeries> series;
+    for (const camera::SpectralLine& line : camera::kSpectralLines)
+        series.push_back({{}, io::PlotStyle::Dots, line.name});
     fmt::print("film at {:.6f} mm\n{:>10} {:>6} {:>12} {:>12} {:>12}\n", setup.film_mm, "field (°)",
                "line", "x (mm)", "y (mm)", "RMS (µm)");
-    std::vector<std::vector<std::vector<BundleRay>>> drawn;  // by field, by line
-    std::vector<SpotSize> sizes;
+    std::vector<std::vector<std::vector<camera::BundleRay>>> drawn;  // by field, by line
+    std::vector<camera::SpotSize> sizes;
     double reach_mm = 1e-6;
     for (const double deg : setup.fields_deg) {
-        std::vector<BundleRay> all;
+        std::vector<camera::BundleRay> all;
         drawn.emplace_back();
-        for (const SpectralLine& line : kSpectralLines) {
-            const AimedBundle bundle = aim(setup, deg, line.nm);
+        for (const camera::SpectralLine& line : camera::kSpectralLines) {
+            const camera::AimedBundle bundle = aim(setup, deg, line.nm);
             const auto rays = traced(bundle, setup.film_mm, side);
             if (rays.empty()) refuse_dark(*setup.lens, deg);
-            print_spot(deg, line.name, spot_size(rays));
+            print_spot(deg, line.name, camera::spot_size(rays));
             append(all, rays);
             drawn.back().push_back(traced(bundle, setup.film_mm, drawn_side));
         }
-        sizes.push_back(spot_size(all));
+        sizes.push_back(camera::spot_size(all));
         print_spot(deg, "F+d+C", sizes.back());
         for (const auto& rays : drawn.back())
-            for (const BundleRay& ray : rays)
+            for (const camera::BundleRay& ray : rays)
                 for (size_t k = 0; k < 2; ++k)
                     reach_mm =
                         std::max(reach_mm, std::fabs(ray.film_mm[k] - sizes.back().centroid_mm[k]));
@@ -61,10 +61,10 @@ Found spot_analysis(const AnalysisOptions& o) {
     for (size_t i = 0; i < drawn.size(); ++i) {
         fields += fmt::format("{}{:.4g}°", i ? ", " : "", setup.fields_deg[i]);
         const double aside_mm = 2.4 * reach_mm * static_cast<double>(i);
-        for (size_t line = 0; line < kSpectralLines.size(); ++line)
-            for (const BundleRay& ray : drawn[i][line]) {
-                out.rows.push_back(
-                    {setup.fields_deg[i], kSpectralLines[line].nm, ray.film_mm[0], ray.film_mm[1]});
+        for (size_t line = 0; line < camera::kSpectralLines.size(); ++line)
+            for (const camera::BundleRay& ray : drawn[i][line]) {
+                out.rows.push_back({setup.fields_deg[i], camera::kSpectralLines[line].nm,
+                                    ray.film_mm[0], ray.film_mm[1]});
                 series[line].points.push_back(
                     {kMicrons * (ray.film_mm[0] - sizes[i].centroid_mm[0] + aside_mm),
                      kMicrons * (ray.film_mm[1] - sizes[i].centroid_mm[1])});
@@ -83,23 +83,24 @@ Found fan_analysis(const AnalysisOptions& o) {
     Found out;
     out.names = {"field_deg", "nm", "tangential", "stop_radii", "dx_mm", "dy_mm"};
     for (const double deg : setup.fields_deg) {
-        const AimedBundle main = aim(setup, deg, kLineD_nm);
-        const PupilPoint chief = main.chief();
-        const auto centre = main.trace({&chief, 1}, setup.film_mm, Clip::No);
+        const camera::AimedBundle main = aim(setup, deg, kLineD_nm);
+        const camera::PupilPoint chief = main.chief();
+        const auto centre = main.trace({&chief, 1}, setup.film_mm, camera::Clip::No);
         if (centre.empty()) refuse_dark(*setup.lens, deg);
-        for (const Section along : {setup.section, across(setup)})
-            for (const SpectralLine& line : kSpectralLines) {
+        for (const camera::Section along : {setup.section, across(setup)})
+            for (const camera::SpectralLine& line : camera::kSpectralLines) {
                 const bool tangential = along == setup.section;
-                PlotSeries series{{}, PlotStyle::Lines, {}};
+                io::PlotSeries series{{}, io::PlotStyle::Lines, {}};
                 series.label = fmt::format("{:.4g}° {} {}", deg, line.name,
                                            tangential ? "tangential" : "sagittal");
-                const AimedBundle bundle = aim(setup, deg, line.nm);
+                const camera::AimedBundle bundle = aim(setup, deg, line.nm);
                 const auto fan =
-                    ray_fan(*setup.lens, bundle, along, setup.film_mm, centre[0].film_mm);
+                    camera::ray_fan(*setup.lens, bundle, along, setup.film_mm, centre[0].film_mm);
                 if (fan.empty()) refuse_dark(*setup.lens, deg);
-                for (const FanPoint& point : fan) {
+                for (const camera::FanPoint& point : fan) {
                     series.points.push_back(
-                        {point.stop, kMicrons * point.from_mm[along == Section::X ? 0 : 1]});
+                        {point.stop,
+                         kMicrons * point.from_mm[along == camera::Section::X ? 0 : 1]});
                     out.rows.push_back({deg, line.nm, double(tangential), point.stop,
                                         point.from_mm[0], point.from_mm[1]});
                 }
@@ -120,18 +121,18 @@ Found mtf_analysis(const AnalysisOptions& o) {
     out.names = {"field_deg", "cycles_per_mm", "tangential", "sagittal"};
     std::vector<std::array<double, 2>> halfway;  // by rays, at half of the highest frequency
     for (const double deg : setup.fields_deg) {
-        std::vector<std::vector<BundleRay>> rays;
+        std::vector<std::vector<camera::BundleRay>> rays;
         for (const LightLine& line : light) {
             rays.push_back(traced(aim(setup, deg, line.nm), setup.film_mm, side));
             if (rays.back().empty()) refuse_dark(*setup.lens, deg);
         }
         std::optional<WaveContrast> waves;
         if (o.wave) waves.emplace(require_waves(setup, deg, light), light);
-        const auto contrast = [&](double cycles, Section along) {
+        const auto contrast = [&](double cycles, camera::Section along) {
             return waves ? waves->at(cycles, along) : ray_contrast(rays, light, cycles, along);
         };
-        PlotSeries tangential{{}, PlotStyle::Lines, fmt::format("{:.4g}° tangential", deg)};
-        PlotSeries sagittal{{}, PlotStyle::Lines, fmt::format("{:.4g}° sagittal", deg)};
+        io::PlotSeries tangential{{}, io::PlotStyle::Lines, fmt::format("{:.4g}° tangential", deg)};
+        io::PlotSeries sagittal{{}, io::PlotStyle::Lines, fmt::format("{:.4g}° sagittal", deg)};
         for (int i = 0; i <= steps; ++i) {
             const double cycles = o.most_cycles * i / steps;
             const double t = contrast(cycles, setup.section), s = contrast(cycles, across(setup));
@@ -173,7 +174,7 @@ Found distortion_analysis(const AnalysisOptions& o) {
     const FieldSetup setup = set_up_lit(o.field, shares);
     Found out;
     out.names = {"field_deg", "height_mm", "ideal_height_mm", "distortion"};
-    PlotSeries series{{}, PlotStyle::LinesAndPoints, {}};
+    io::PlotSeries series{{}, io::PlotStyle::LinesAndPoints, {}};
     std::vector<double> on_axis, too_wide, dark;
     for (const double deg : setup.fields_deg) {
         if (deg <= 0 || deg > widest_deg) {
@@ -181,7 +182,7 @@ Found distortion_analysis(const AnalysisOptions& o) {
             continue;
         }
         const auto found =
-            distortion(*setup.lens, deg, setup.film_mm, setup.distance_mm, setup.section);
+            camera::distortion(*setup.lens, deg, setup.film_mm, setup.distance_mm, setup.section);
         if (!found) {
             dark.push_back(deg);
             continue;
@@ -195,10 +196,10 @@ Found distortion_analysis(const AnalysisOptions& o) {
                                        widest_deg));
     say_left_out(dark, "no ray through the middle of the stop reaches the film");
     if (out.rows.empty())
-        throw ArgumentError(o.field.request.lens, "",
-                            "no field above 0° and up to {:g}° reaches the film; give "
-                            "other ones by --field",
-                            widest_deg);
+        throw io::ArgumentError(o.field.request.lens, "",
+                                "no field above 0° and up to {:g}° reaches the film; give "
+                                "other ones by --field",
+                                widest_deg);
     out.plot = {.title = title_of(*setup.lens, "distortion at line d"),
                 .x_label = "field (degrees)",
                 .y_label = "height on the film against f tan(field) (%)",
@@ -212,16 +213,17 @@ Found vignetting_analysis(const AnalysisOptions& o) {
     const double circle_mm =
         o.image_circle_mm > 0 ? o.image_circle_mm : setup.lens->prescription().image_circle_mm;
     if (!(circle_mm > 0))
-        throw ArgumentError(o.field.request.lens, "",
-                            "does not state its image circle; give --image-circle");
+        throw io::ArgumentError(o.field.request.lens, "",
+                                "does not state its image circle; give --image-circle");
     std::vector<double> heights;
     for (int i = 0; i <= steps; ++i) heights.push_back(circle_mm / 2 * i / steps);
-    const auto light = film_irradiance(setup.lens, setup.film_mm, heights, setup.section);
+    const auto light = camera::film_irradiance(setup.lens, setup.film_mm, heights, setup.section);
     if (!(light[0] > 0))
-        throw ArgumentError(o.field.request.lens, "", "no light reaches the middle of the film");
+        throw io::ArgumentError(o.field.request.lens, "",
+                                "no light reaches the middle of the film");
     Found out;
     out.names = {"height_mm", "irradiance", "relative"};
-    PlotSeries series{{}, PlotStyle::LinesAndPoints, {}};
+    io::PlotSeries series{{}, io::PlotStyle::LinesAndPoints, {}};
     for (size_t i = 0; i < heights.size(); ++i) {
         out.rows.push_back({heights[i], light[i], light[i] / light[0]});
         series.points.push_back({heights[i], 100 * light[i] / light[0]});
@@ -266,4 +268,4 @@ void add_lens_analysis_commands(CLI::App& lens) {
         ->transform(number_between(1e-3, 1e5, kMillimetres));
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

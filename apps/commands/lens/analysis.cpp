@@ -11,13 +11,13 @@
 #include "io/file/csv.h"
 #include "io/file/rescue.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 double shown(double mm) {
     return std::fabs(mm) < 5e-7 ? 0 : mm;
 }
 
-std::string title_of(const Lens& lens, const std::string& what) {
+std::string title_of(const camera::Lens& lens, const std::string& what) {
     return fmt::format("{}: {}", lens.prescription().name, what);
 }
 
@@ -27,18 +27,18 @@ FieldSetup set_up_lit(const FieldRequest& request, const std::vector<double>& sh
     return setup;
 }
 
-Section across(const FieldSetup& setup) {
-    return setup.section == Section::X ? Section::Y : Section::X;
+camera::Section across(const FieldSetup& setup) {
+    return setup.section == camera::Section::X ? camera::Section::Y : camera::Section::X;
 }
 
-std::vector<BundleRay> traced(const AimedBundle& bundle, double film_mm, int side) {
+std::vector<camera::BundleRay> traced(const camera::AimedBundle& bundle, double film_mm, int side) {
     return bundle.trace(bundle.grid(side), film_mm);
 }
 
-void refuse_dark(const Lens& lens, double field_deg) {
-    throw ArgumentError(lens.prescription().name, "",
-                        "no light of the field {:g}° reaches the film; give a smaller --field",
-                        field_deg);
+void refuse_dark(const camera::Lens& lens, double field_deg) {
+    throw io::ArgumentError(lens.prescription().name, "",
+                            "no light of the field {:g}° reaches the film; give a smaller --field",
+                            field_deg);
 }
 
 std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, const char* help,
@@ -52,25 +52,26 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
     command->footer(footer);
     command->callback([options, analyse] {
         const bool with_csv = !options->csv.empty();
-        std::vector<NamedFile> outputs{{"-o", options->plot}};
+        std::vector<io::NamedFile> outputs{{"-o", options->plot}};
         if (with_csv) outputs.push_back({"--csv", options->csv});
         if (!options->map.empty()) outputs.push_back({"--map", options->map});
         refuse_overwriting(outputs, options->field.request);
-        check_plot(options->plot);
-        if (!options->map.empty()) check_plot(options->map);
-        if (with_csv) check_writable(options->csv);
+        io::check_plot(options->plot);
+        if (!options->map.empty()) io::check_plot(options->map);
+        if (with_csv) io::check_writable(options->csv);
         const Found found = analyse(*options);
         const auto& all = found.plot.series;
         if (std::all_of(all.begin(), all.end(), [](const auto& s) { return s.points.empty(); }))
-            throw ArgumentError(options->field.request.lens, "",
-                                "too few rays reach the film for a plot");
-        attempt_all({[&] {
-                         if (with_csv)
-                             write_file_atomically(options->csv, csv_text(found.names, found.rows));
-                     },
-                     [&] { write_plot(options->plot, found.plot); }});
+            throw io::ArgumentError(options->field.request.lens, "",
+                                    "too few rays reach the film for a plot");
+        io::attempt_all({[&] {
+                             if (with_csv)
+                                 io::write_file_atomically(options->csv,
+                                                           io::csv_text(found.names, found.rows));
+                         },
+                         [&] { io::write_plot(options->plot, found.plot); }});
     });
     return options;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,11 +8,11 @@
 #include "camera/bench/spot.h"
 #include "io/plot/plot.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Result of an analysis: a diagram, and the numbers in it.
 struct Found {
-    Plot plot;
+    io::Plot plot;
     std::vector<std::string> names{};
     std::vector<std::vector<double>> rows{};
 };
@@ -35,13 +35,14 @@ std::shared_ptr<AnalysisOptions> add_analysis(CLI::App& lens, const char* name, 
                                               const char* footer);
 /// A length as tables with six decimals show it: not -0.000000.
 [[nodiscard]] double shown(double mm);
-[[nodiscard]] std::string title_of(const Lens&, const std::string& what);
+[[nodiscard]] std::string title_of(const camera::Lens&, const std::string& what);
 /// set_up() for a lens that lets light through to the middle of the film.
 [[nodiscard]] FieldSetup set_up_lit(const FieldRequest&, const std::vector<double>& shares);
 /// The section that a setup's field is not in.
-[[nodiscard]] Section across(const FieldSetup&);
+[[nodiscard]] camera::Section across(const FieldSetup&);
 /// Rays of a bundle from side x side cells of its box.
-[[nodiscard]] std::vector<BundleRay> traced(const AimedBundle&, double film_mm, int side);
-[[noreturn]] void refuse_dark(const Lens&, double field_deg);
+[[nodiscard]] std::vector<camera::BundleRay> traced(const camera::AimedBundle&, double film_mm,
+                                                    int side);
+[[noreturn]] void refuse_dark(const camera::Lens&, double field_deg);
 
-}  // namespace petzval
+}  // namespace petzval::apps

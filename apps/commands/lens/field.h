@@ -13,13 +13,13 @@
 #include "camera/lens/focus.h"
 #include "camera/setup/lens_bench.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 struct FieldRequest {
     LensRequest request;
     std::string fields;  ///< degrees with commas between them
     std::string focus;   ///< metres
-    std::optional<FocusBy> focus_by;
+    std::optional<camera::FocusBy> focus_by;
     std::string film_shift;  ///< mm, or best
     std::string fstop;
     std::string section = "y";
@@ -29,9 +29,9 @@ struct FieldRequest {
 void add_field_request(CLI::App&, FieldRequest&, bool with_fields = true);
 
 /// A lens stopped down and in focus, as far as asked; else as filed.
-struct FieldSetup : LensBench {
+struct FieldSetup : camera::LensBench {
     std::vector<double> fields_deg;
-    Section section = Section::Y;
+    camera::Section section = camera::Section::Y;
 };
 /// Opens the lens. shares: fields as shares of the half field, where --field does not say. Throws
 /// CLI::ValidationError, or ArgumentError where the lens has no such thing.
@@ -39,10 +39,10 @@ struct FieldSetup : LensBench {
 
 /// Throws ArgumentError, which says why, for a lens that lets next to no light through to the
 /// middle of the film.
-void require_light(const Lens&);
+void require_light(const camera::Lens&);
 
 /// Ray bundle of a field at a wavelength. Throws ArgumentError where no ray of that field passes
 /// the middle of the stop.
-[[nodiscard]] AimedBundle aim(const FieldSetup&, double field_deg, double nm);
+[[nodiscard]] camera::AimedBundle aim(const FieldSetup&, double field_deg, double nm);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -11,7 +11,7 @@
 #include "camera/bench/field_focus.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 std::vector<double> shares_from(int first, int steps) {
@@ -20,9 +20,9 @@ std::vector<double> shares_from(int first, int steps) {
     return out;
 }
 
-double open_fnumber(const Lens& lens) {
+double open_fnumber(const camera::Lens& lens) {
     const auto stop = static_cast<size_t>(lens.stop());
-    return fnumber_of(lens, lens.prescription().surfaces[stop].semi_diameter_mm);
+    return camera::fnumber_of(lens, lens.prescription().surfaces[stop].semi_diameter_mm);
 }
 
 // Films at which a field is looked at: contrast has gone at the ends, and foci lie between.
@@ -30,18 +30,18 @@ double depth_of(const FieldSetup& setup, double cycles) {
     const double blur_mm = 2 * open_fnumber(*setup.lens) / cycles;
     double off_mm = 0;
     for (const double deg : setup.fields_deg)
-        if (const auto focus = field_focus(aim(setup, deg, kLineD_nm), setup.film_mm))
+        if (const auto focus = camera::field_focus(aim(setup, deg, kLineD_nm), setup.film_mm))
             off_mm =
                 std::max({off_mm, std::fabs(focus->tangential_mm), std::fabs(focus->sagittal_mm)});
     const double depth_mm = blur_mm + std::min(off_mm, 5 * blur_mm);
     if (!std::isfinite(depth_mm))
-        throw ArgumentError(setup.lens->prescription().name, "",
-                            "no ray along the axis reaches the film");
+        throw io::ArgumentError(setup.lens->prescription().name, "",
+                                "no ray along the axis reaches the film");
     return depth_mm;
 }
 
-std::vector<BundleRay> moved_rays(std::vector<BundleRay> rays, double shift_mm) {
-    for (BundleRay& ray : rays)
+std::vector<camera::BundleRay> moved_rays(std::vector<camera::BundleRay> rays, double shift_mm) {
+    for (camera::BundleRay& ray : rays)
         for (size_t k = 0; k < 2; ++k) ray.film_mm[k] += shift_mm * ray.slope[k];
     return rays;
 }
@@ -55,32 +55,33 @@ Found through_focus_analysis(const AnalysisOptions& o) {
     out.names = {"field_deg", "shift_mm", "tangential", "sagittal", "rms_mm"};
     fmt::print("film at {:.6f} mm\n{:>10} {:>17} {:>17} {:>17}\n", setup.film_mm, "field (°)",
                "least RMS at (mm)", "tangential (mm)", "sagittal (mm)");
-    std::vector<std::vector<std::vector<BundleRay>>> rays;  // by field, by line
+    std::vector<std::vector<std::vector<camera::BundleRay>>> rays;  // by field, by line
     for (const double deg : setup.fields_deg) {
         rays.emplace_back();
-        std::vector<BundleRay> all;
+        std::vector<camera::BundleRay> all;
         for (const LightLine& line : light) {
             rays.back().push_back(traced(aim(setup, deg, line.nm), setup.film_mm, side));
             if (rays.back().back().empty()) refuse_dark(*setup.lens, deg);
             all.insert(all.end(), rays.back().back().begin(), rays.back().back().end());
         }
-        const auto waves =
-            o.wave ? require_waves(setup, deg, light, depth_mm) : std::vector<PupilFunction>();
+        const auto waves = o.wave ? require_waves(setup, deg, light, depth_mm)
+                                  : std::vector<camera::PupilFunction>();
         const auto contrast_at = [&](double shift_mm) {
             if (o.wave) {
-                std::vector<PupilFunction> there;
-                for (const PupilFunction& wave : waves) there.push_back(moved(wave, shift_mm));
+                std::vector<camera::PupilFunction> there;
+                for (const camera::PupilFunction& wave : waves)
+                    there.push_back(camera::moved(wave, shift_mm));
                 const WaveContrast contrast(there, light);
                 return std::array{contrast.at(o.most_cycles, setup.section),
                                   contrast.at(o.most_cycles, across(setup))};
             }
-            std::vector<std::vector<BundleRay>> there;
+            std::vector<std::vector<camera::BundleRay>> there;
             for (const auto& of_line : rays.back()) there.push_back(moved_rays(of_line, shift_mm));
             return std::array{ray_contrast(there, light, o.most_cycles, setup.section),
                               ray_contrast(there, light, o.most_cycles, across(setup))};
         };
         std::array<std::array<double, 2>, 2> best{};  // shift and contrast
-        PlotSeries lines[2];
+        io::PlotSeries lines[2];
         for (size_t k = 0; k < 2; ++k)
             lines[k].label = fmt::format("{:.4g}° {}", deg, k ? "sagittal" : "tangential");
         for (int i = -steps; i <= steps; ++i) {
@@ -91,11 +92,11 @@ Found through_focus_analysis(const AnalysisOptions& o) {
                 if (contrast[k] > best[k][1]) best[k] = {shift_mm, contrast[k]};
             }
             out.rows.push_back(
-                {deg, shift_mm, contrast[0], contrast[1], spot_size(all, shift_mm).rms_mm});
+                {deg, shift_mm, contrast[0], contrast[1], camera::spot_size(all, shift_mm).rms_mm});
         }
         fmt::print("{:>10.4g} {:>17.4f} {:>9.4f} ({:>5.3f}) {:>9.4f} ({:>5.3f})\n", deg,
-                   best_shift_mm(all), best[0][0], best[0][1], best[1][0], best[1][1]);
-        for (PlotSeries& line : lines) out.plot.series.push_back(std::move(line));
+                   camera::best_shift_mm(all), best[0][0], best[0][1], best[1][0], best[1][1]);
+        for (io::PlotSeries& line : lines) out.plot.series.push_back(std::move(line));
     }
     out.plot.title = title_of(
         *setup.lens,
@@ -111,7 +112,7 @@ Found curves(const std::string& title, const char* x_label, const char* y_label,
              double factor = 1) {
     Found out{{title, x_label, y_label, {}}, std::move(names), std::move(rows)};
     for (size_t k = 1; k < out.names.size(); ++k) {
-        PlotSeries series{.label = out.names[k].substr(0, out.names[k].rfind('_'))};
+        io::PlotSeries series{.label = out.names[k].substr(0, out.names[k].rfind('_'))};
         for (const auto& row : out.rows) series.points.push_back({row[0], factor * row[k]});
         out.plot.series.push_back(std::move(series));
     }
@@ -122,9 +123,9 @@ Found field_curvature_analysis(const AnalysisOptions& o) {
     const FieldSetup setup = set_up_lit(o.field, shares_from(0, 40));
     std::vector<std::vector<double>> rows;
     for (const double deg : setup.fields_deg) {
-        const auto bundle =
-            AimedBundle::aim(*setup.lens, {deg, setup.distance_mm, setup.section}, kLineD_nm);
-        if (const auto focus = bundle ? field_focus(*bundle, setup.film_mm) : std::nullopt)
+        const auto bundle = camera::AimedBundle::aim(
+            *setup.lens, {deg, setup.distance_mm, setup.section}, kLineD_nm);
+        if (const auto focus = bundle ? camera::field_focus(*bundle, setup.film_mm) : std::nullopt)
             rows.push_back({deg, focus->tangential_mm, focus->sagittal_mm});
     }
     return curves(title_of(*setup.lens, "field curvature and astigmatism, line d"),
@@ -135,18 +136,19 @@ Found field_curvature_analysis(const AnalysisOptions& o) {
 Found focal_shift_analysis(const AnalysisOptions& o) {
     constexpr int first_nm = 400, last_nm = 700, step_nm = 5, side = 64;
     const FieldSetup setup = set_up_lit(o.field, {});
-    const Lens& lens = *setup.lens;
-    const double object_mm = first_order(lens, kLineD_nm).entrance_pupil_mm - setup.distance_mm;
+    const camera::Lens& lens = *setup.lens;
+    const double object_mm =
+        camera::first_order(lens, kLineD_nm).entrance_pupil_mm - setup.distance_mm;
     std::vector<std::vector<double>> rows;
     for (int nm = first_nm; nm <= last_nm; nm += step_nm) {
         const double image_mm =
             std::isfinite(object_mm)
-                ? image_of(lens, object_mm, nm, setup.section).from_last_vertex_mm
-                : first_order(lens, nm, setup.section).back_focus_mm;
+                ? camera::image_of(lens, object_mm, nm, setup.section).from_last_vertex_mm
+                : camera::first_order(lens, nm, setup.section).back_focus_mm;
         const auto rays = traced(aim(setup, 0, nm), setup.film_mm, side);
         if (rays.empty()) refuse_dark(lens, 0);
         rows.push_back({double(nm), lens.vertex_mm(lens.last()) + image_mm - setup.film_mm,
-                        best_shift_mm(rays)});
+                        camera::best_shift_mm(rays)});
     }
     return curves(title_of(lens, "chromatic focal shift on the axis"), "wavelength (nm)",
                   "focus behind the film (mm)", {"nm", "paraxial_mm", "least_spot_mm"},
@@ -155,12 +157,12 @@ Found focal_shift_analysis(const AnalysisOptions& o) {
 
 Found lateral_colour_analysis(const AnalysisOptions& o) {
     const FieldSetup setup = set_up_lit(o.field, shares_from(0, 40));
-    const double airy_mm = airy_radius_mm(kLineD_nm, open_fnumber(*setup.lens));
+    const double airy_mm = camera::airy_radius_mm(kLineD_nm, open_fnumber(*setup.lens));
     std::vector<std::vector<double>> rows;
     for (const double deg : setup.fields_deg) {
         const auto height = [&](double nm) {
-            return chief_height_mm(*setup.lens, {deg, setup.distance_mm, setup.section},
-                                   setup.film_mm, nm);
+            return camera::chief_height_mm(*setup.lens, {deg, setup.distance_mm, setup.section},
+                                           setup.film_mm, nm);
         };
         const auto f = height(kLineF_nm), d = height(kLineD_nm), c = height(kLineC_nm);
         if (f && d && c) rows.push_back({deg, *f - *d, *c - *d, airy_mm, -airy_mm});
@@ -170,7 +172,7 @@ Found lateral_colour_analysis(const AnalysisOptions& o) {
                        {"field_deg", "F_mm", "C_mm", "airy_mm", "minus_airy_mm"}, std::move(rows),
                        kMicrons);
     for (const size_t k : {2, 3}) {
-        out.plot.series[k].style = PlotStyle::Dashes;
+        out.plot.series[k].style = io::PlotStyle::Dashes;
         out.plot.series[k].grey = true;
         out.plot.series[k].label = k == 2 ? "radius of Airy's disc" : "";
     }
@@ -203,4 +205,4 @@ void add_lens_focus_commands(CLI::App& lens) {
                  "axis, which hides what is smaller.");
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

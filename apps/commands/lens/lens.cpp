@@ -7,7 +7,7 @@
 #include "io/glass/agf.h"
 #include "io/lens/lens_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 void add_lens_request(CLI::App& app, LensRequest& request) {
     app.add_option("lens", request.lens, "name of a lens (see lens list), or .json, .dat, .zmx")
@@ -18,21 +18,21 @@ void add_lens_request(CLI::App& app, LensRequest& request) {
         ->allow_extra_args(false);
 }
 
-void refuse_overwriting(const std::vector<NamedFile>& outputs, const LensRequest& request,
-                        std::vector<NamedFile> inputs) {
+void refuse_overwriting(const std::vector<io::NamedFile>& outputs, const LensRequest& request,
+                        std::vector<io::NamedFile> inputs) {
     inputs.push_back({"the lens", request.lens});
     for (const std::string& file : request.catalogs)
         inputs.push_back({"the file of --glasses", file});
-    for (NamedFile& own : own_files()) inputs.push_back(std::move(own));
-    refuse_overwriting(outputs, inputs);
+    for (io::NamedFile& own : own_files()) inputs.push_back(std::move(own));
+    io::refuse_overwriting(outputs, inputs);
 }
 
-std::shared_ptr<const Lens> open_lens(const LensRequest& request) {
-    std::vector<AgfCatalog> catalogs;
+std::shared_ptr<const camera::Lens> open_lens(const LensRequest& request) {
+    std::vector<io::AgfCatalog> catalogs;
     for (const std::string& file : request.catalogs) catalogs.emplace_back(file);
-    LensFile file = load_lens(request.lens, catalogs);
+    io::LensFile file = io::load_lens(request.lens, catalogs);
     for (const std::string& warning : file.warnings) print_notice(warning);
-    return std::make_shared<const Lens>(std::move(file.lens));
+    return std::make_shared<const camera::Lens>(std::move(file.lens));
 }
 
 void add_lens_commands(CLI::App& app) {
@@ -46,4 +46,4 @@ void add_lens_commands(CLI::App& app) {
     add_lens_light_commands(*lens);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -5,9 +5,9 @@ namespace CLI {
 class App;
 }
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Adds petzval lens, the optics bench.
 void add_lens_commands(CLI::App&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

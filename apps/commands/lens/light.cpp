@@ -16,7 +16,7 @@
 #include "io/lens/lens_drawing.h"
 #include "io/plot/plot.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 struct LightOptions {
@@ -27,37 +27,37 @@ struct LightOptions {
 /// A lens with its coats.
 struct CoatedLens {
     FieldSetup setup;
-    Coating coating;
-    [[nodiscard]] const Lens& lens() const { return *setup.lens; }
-    [[nodiscard]] LensCoats coats() const { return {lens(), coating}; }
-    [[nodiscard]] DistantLight light(double field_deg, double nm) const {
-        return {field_deg, setup.section, nm, setup.film_mm, lit_radius_mm(lens())};
+    camera::Coating coating;
+    [[nodiscard]] const camera::Lens& lens() const { return *setup.lens; }
+    [[nodiscard]] camera::LensCoats coats() const { return {lens(), coating}; }
+    [[nodiscard]] camera::DistantLight light(double field_deg, double nm) const {
+        return {field_deg, setup.section, nm, setup.film_mm, camera::lit_radius_mm(lens())};
     }
 };
 
 CoatedLens set_up_coated(const LightOptions& o, const std::vector<double>& shares) {
-    CoatedLens out{set_up(o.field, shares), Coating::Filed};
+    CoatedLens out{set_up(o.field, shares), camera::Coating::Filed};
     require_light(out.lens());
-    const SurfaceCoat coat = read_coat(o.coating);
-    if (const auto* name = std::get_if<Coating>(&coat)) {
+    const camera::SurfaceCoat coat = io::read_coat(o.coating);
+    if (const auto* name = std::get_if<camera::Coating>(&coat)) {
         out.coating = *name;
-        if (out.coating == Coating::Year && out.lens().prescription().year == 0)
-            throw ArgumentError(o.field.request.lens, "",
-                                "its file states no year, by which --coating year goes: give "
-                                "--coating filed, or another");
+        if (out.coating == camera::Coating::Year && out.lens().prescription().year == 0)
+            throw io::ArgumentError(o.field.request.lens, "",
+                                    "its file states no year, by which --coating year goes: give "
+                                    "--coating filed, or another");
     } else {
-        Prescription file = out.lens().prescription();
+        camera::Prescription file = out.lens().prescription();
         for (size_t i = 0; i < file.surfaces.size(); ++i)
-            file.surfaces[i].coat = touches_air(out.lens().surfaces<double>()[i])
+            file.surfaces[i].coat = camera::touches_air(out.lens().surfaces<double>()[i])
                                         ? coat
-                                        : SurfaceCoat(Coating::Uncoated);
-        out.setup.lens = std::make_shared<const Lens>(std::move(file));
+                                        : camera::SurfaceCoat(camera::Coating::Uncoated);
+        out.setup.lens = std::make_shared<const camera::Lens>(std::move(file));
     }
     return out;
 }
 
 // Prints a table below what it is of.
-void print_table(const LightOptions& o, const Lens& lens, const std::string& table) {
+void print_table(const LightOptions& o, const camera::Lens& lens, const std::string& table) {
     print_line(fmt::format("{}, coating {}", lens.prescription().name, o.coating));
     size_t clear = 0;
     for (const Glass& glass : lens.media()) clear += glass.absorption_per_mm.empty();
@@ -68,22 +68,22 @@ void print_table(const LightOptions& o, const Lens& lens, const std::string& tab
 }
 
 [[noreturn]] void refuse_dark_field(const LightOptions& o, double field_deg) {
-    throw ArgumentError(o.field.request.lens, "",
-                        "no light of the field {:g}° reaches the film; give a smaller --field",
-                        field_deg);
+    throw io::ArgumentError(o.field.request.lens, "",
+                            "no light of the field {:g}° reaches the film; give a smaller --field",
+                            field_deg);
 }
 
 void transmittance_command(const LightOptions& o) {
     const CoatedLens lens = set_up_coated(o, {0, 0.7, 1});
-    const LensCoats coats = lens.coats();
+    const camera::LensCoats coats = lens.coats();
     std::string table = fmt::format("{:>8}", "nm");
     for (const double deg : lens.setup.fields_deg)
         table += fmt::format(" {:>9}", fmt::format("{:.4g}°", deg));
     for (int nm = 400; nm <= 700; nm += 20) {
         table += fmt::format("\n{:>8}", nm);
         for (const double deg : lens.setup.fields_deg) {
-            const auto share =
-                transmittance(lens.lens(), coats, aim(lens.setup, deg, nm), lens.setup.film_mm);
+            const auto share = camera::transmittance(lens.lens(), coats, aim(lens.setup, deg, nm),
+                                                     lens.setup.film_mm);
             if (!share) refuse_dark_field(o, deg);
             table += fmt::format(" {:>9.5f}", *share);
         }
@@ -92,99 +92,102 @@ void transmittance_command(const LightOptions& o) {
 }
 
 // Shares of the light that meets the first surface, in per cent, at one field.
-LightBudget budget_of(const LightOptions& o, const CoatedLens& lens, const LensCoats& coats,
-                      double deg, double nm) {
-    const auto found = light_budget(lens.lens(), coats, lens.light(deg, nm));
+camera::LightBudget budget_of(const LightOptions& o, const CoatedLens& lens,
+                              const camera::LensCoats& coats, double deg, double nm) {
+    const auto found = camera::light_budget(lens.lens(), coats, lens.light(deg, nm));
     if (!found) refuse_dark_field(o, deg);
     return *found;
 }
 
-Plot budget_plot(const LightOptions& o, const CoatedLens& lens, const LensCoats& coats) {
+io::Plot budget_plot(const LightOptions& o, const CoatedLens& lens,
+                     const camera::LensCoats& coats) {
     constexpr int steps = 10;
     constexpr double nm = 550, least = 1e-5;
-    Plot plot{.title = fmt::format("{}, coating {}, {} nm", lens.lens().prescription().name,
-                                   o.coating, nm),
-              .x_label = "field (degrees)",
-              .y_label = "share of the light on the first surface (%)",
-              .series = {},
-              .logarithmic_y = true};
-    for (const auto& [name, part] : kBudgetParts)
-        plot.series.push_back({{}, PlotStyle::LinesAndPoints, name});
+    io::Plot plot{.title = fmt::format("{}, coating {}, {} nm", lens.lens().prescription().name,
+                                       o.coating, nm),
+                  .x_label = "field (degrees)",
+                  .y_label = "share of the light on the first surface (%)",
+                  .series = {},
+                  .logarithmic_y = true};
+    for (const auto& [name, part] : camera::kBudgetParts)
+        plot.series.push_back({{}, io::PlotStyle::LinesAndPoints, name});
     const double most_deg = lens.setup.fields_deg.back();
     for (int i = 0; i <= steps; ++i) {
         const double deg = most_deg * i / steps;
-        const LightBudget b = budget_of(o, lens, coats, deg, nm);
-        for (size_t k = 0; k < kBudgetParts.size(); ++k)
-            if (const double share = b.*kBudgetParts[k].second; share > least)
+        const camera::LightBudget b = budget_of(o, lens, coats, deg, nm);
+        for (size_t k = 0; k < camera::kBudgetParts.size(); ++k)
+            if (const double share = b.*camera::kBudgetParts[k].second; share > least)
                 plot.series[k].points.push_back({deg, 100 * share});
     }
     return plot;
 }
 
 void budget_command(const LightOptions& o) {
-    std::vector<NamedFile> outputs;
-    if (!o.out.empty()) outputs.push_back({"-o", o.out}), check_plot(o.out);
-    if (!o.csv.empty()) outputs.push_back({"--csv", o.csv}), check_writable(o.csv);
+    std::vector<io::NamedFile> outputs;
+    if (!o.out.empty()) outputs.push_back({"-o", o.out}), io::check_plot(o.out);
+    if (!o.csv.empty()) outputs.push_back({"--csv", o.csv}), io::check_writable(o.csv);
     refuse_overwriting(outputs, o.field.request, {{"the file of --coating", o.coating}});
     const CoatedLens lens = set_up_coated(o, {0, 0.7, 1});
-    const LensCoats coats = lens.coats();
+    const camera::LensCoats coats = lens.coats();
     std::vector<std::string> names{"field_deg", "nm"};
     std::vector<std::vector<double>> rows;
     std::string table = fmt::format("{:>9} {:>6}", "field (°)", "nm");
-    for (const auto& [name, part] : kBudgetParts) {
+    for (const auto& [name, part] : camera::kBudgetParts) {
         table += fmt::format(" {:>13}", name);
         names.emplace_back(name);
     }
     table += fmt::format(" {:>9}", "sum (%)");
     for (const double deg : lens.setup.fields_deg)
         for (const double nm : {450., 550., 650.}) {
-            const LightBudget b = budget_of(o, lens, coats, deg, nm);
+            const camera::LightBudget b = budget_of(o, lens, coats, deg, nm);
             rows.push_back({deg, nm});
             table += fmt::format("\n{:>9.4g} {:>6}", deg, nm);
-            for (const auto& [name, part] : kBudgetParts) {
+            for (const auto& [name, part] : camera::kBudgetParts) {
                 table += fmt::format(" {:>13.4f}", 100 * (b.*part));
                 rows.back().push_back(b.*part);
             }
             table += fmt::format(" {:>9.3f}", 100 * b.sum());
         }
     print_table(o, lens.lens(), table);
-    attempt_all({[&] {
-                     if (!o.csv.empty()) write_file_atomically(o.csv, csv_text(names, rows));
-                 },
-                 [&] {
-                     if (!o.out.empty()) write_plot(o.out, budget_plot(o, lens, coats));
-                 }});
+    io::attempt_all({[&] {
+                         if (!o.csv.empty())
+                             io::write_file_atomically(o.csv, io::csv_text(names, rows));
+                     },
+                     [&] {
+                         if (!o.out.empty()) io::write_plot(o.out, budget_plot(o, lens, coats));
+                     }});
 }
 
-void draw_ghost(const LightOptions& o, const CoatedLens& lens, const LensCoats& coats, double deg,
-                const Ghost& ghost) {
+void draw_ghost(const LightOptions& o, const CoatedLens& lens, const camera::LensCoats& coats,
+                double deg, const camera::Ghost& ghost) {
     constexpr int rays = 9;
-    LensDrawing drawing{.section = lens.setup.section,
-                        .film_mm = lens.setup.film_mm,
-                        .film_radius_mm = lens.lens().prescription().image_circle_mm / 2,
-                        .rays = {},
-                        .caption = {}};
+    io::LensDrawing drawing{.section = lens.setup.section,
+                            .film_mm = lens.setup.film_mm,
+                            .film_radius_mm = lens.lens().prescription().image_circle_mm / 2,
+                            .rays = {},
+                            .caption = {}};
     drawing.caption =
         fmt::format("{}, coating {}: light from {:.4g}° that surfaces {} and {} reflect, line d",
                     lens.lens().prescription().name, o.coating, deg, ghost.first, ghost.second);
-    for (Outline& path : ghost_paths(lens.lens(), coats, lens.light(deg, kLineD_nm), ghost, rays))
+    for (camera::Outline& path :
+         camera::ghost_paths(lens.lens(), coats, lens.light(deg, kLineD_nm), ghost, rays))
         drawing.rays.push_back({std::move(path), "#c02020"});
-    write_drawing(o.out, lens.lens(), drawing);
+    io::write_drawing(o.out, lens.lens(), drawing);
 }
 
 void ghosts_command(const LightOptions& o) {
     constexpr size_t most_printed = 10;
-    std::vector<NamedFile> outputs;
-    if (!o.out.empty()) outputs.push_back({"-o", o.out}), check_drawing(o.out);
+    std::vector<io::NamedFile> outputs;
+    if (!o.out.empty()) outputs.push_back({"-o", o.out}), io::check_drawing(o.out);
     refuse_overwriting(outputs, o.field.request, {{"the file of --coating", o.coating}});
     const CoatedLens lens = set_up_coated(o, {0, 0.7});
-    const LensCoats coats = lens.coats();
+    const camera::LensCoats coats = lens.coats();
     std::string table;
-    std::vector<Ghost> all;
-    std::optional<Ghost> worst;
+    std::vector<camera::Ghost> all;
+    std::optional<camera::Ghost> worst;
     double worst_deg = 0;
     for (const double deg : lens.setup.fields_deg) {
-        const auto found = ghosts(lens.lens(), coats, lens.light(deg, kLineD_nm));
+        const auto found = camera::ghosts(lens.lens(), coats, lens.light(deg, kLineD_nm));
         table += fmt::format(
             "\nghosts of a distant point at {:.4g}°, line d; the image has light 1\n"
             "{:>9} {:>14} {:>12} {:>12} {:>12}\n",
@@ -199,16 +202,16 @@ void ghosts_command(const LightOptions& o) {
             worst = found[0], worst_deg = deg;
         all.insert(all.end(), found.begin(), found.end());
     }
-    if (const auto surface = worst_surface(all))
+    if (const auto surface = camera::worst_surface(all))
         table += fmt::format(
             "\nA better coating of surface {} would help most: {:.0f} % of all ghosts' "
             "light is reflected there.\n",
             surface->first, 100 * surface->second);
-    if (const auto glare = veiling_glare(lens.lens(), coats, lens.setup.film_mm))
+    if (const auto glare = camera::veiling_glare(lens.lens(), coats, lens.setup.film_mm))
         table +=
             fmt::format("veiling glare of a black hole in a white field: {:.3f} %", 100 * *glare);
     if (!o.out.empty() && !worst)
-        throw ArgumentError(o.field.request.lens, "", "has no ghost that could be drawn");
+        throw io::ArgumentError(o.field.request.lens, "", "has no ghost that could be drawn");
     print_table(o, lens.lens(), table);
     if (!o.out.empty()) draw_ghost(o, lens, coats, worst_deg, *worst);
 }
@@ -225,7 +228,7 @@ std::shared_ptr<LightOptions> add_light_command(CLI::App& lens, const char* name
     app->add_option("--coating", options->coating,
                     fmt::format("{}, or a file of layers (.json) for all surfaces that touch air "
                                 "(default: filed, as the lens's file says)",
-                                coating_names()));
+                                io::coating_names()));
     app->callback([options, command] { command(*options); });
     app->footer(footer);
     return options;
@@ -254,4 +257,4 @@ void add_lens_light_commands(CLI::App& lens) {
                                               "drawing of the brightest to write, .svg");
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -13,7 +13,7 @@
 #include "io/lens/lens_drawing.h"
 #include "io/lens/ray_table.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 struct DrawOptions {
@@ -24,31 +24,31 @@ struct DrawOptions {
 
 void draw_command(const DrawOptions& o) {
     refuse_overwriting({{"-o", o.out}}, o.field.request);
-    check_drawing(o.out);
+    io::check_drawing(o.out);
     const FieldSetup setup = set_up(o.field, {0, 0.7});
-    const Lens& lens = *setup.lens;
-    LensDrawing drawing{
+    const camera::Lens& lens = *setup.lens;
+    io::LensDrawing drawing{
         .section = setup.section, .film_mm = setup.film_mm, .rays = {}, .caption = {}};
     drawing.film_radius_mm = lens.prescription().image_circle_mm / 2;
     const double lead_mm = 0.25 * setup.film_mm;
     std::string fields;
     for (const double deg : setup.fields_deg) {
         fields += fmt::format("{}{:.4g}°", fields.empty() ? "" : ", ", deg);
-        for (const SpectralLine& line : kSpectralLines) {
-            const AimedBundle bundle = aim(setup, deg, line.nm);
-            for (const PupilPoint point : section_points(bundle, o.rays)) {
+        for (const camera::SpectralLine& line : camera::kSpectralLines) {
+            const camera::AimedBundle bundle = aim(setup, deg, line.nm);
+            for (const camera::PupilPoint point : camera::section_points(bundle, o.rays)) {
                 drawing.rays.push_back(
-                    {ray_path(lens, bundle, point, setup.film_mm, lead_mm), line.colour});
+                    {camera::ray_path(lens, bundle, point, setup.film_mm, lead_mm), line.colour});
                 if (drawing.rays.back().path.size() == size_t(lens.size()) + 2)
                     drawing.film_radius_mm = std::max(drawing.film_radius_mm,
                                                       std::abs(drawing.rays.back().path.back()[1]));
             }
         }
     }
-    const Prescription& file = lens.prescription();
+    const camera::Prescription& file = lens.prescription();
     drawing.caption = fmt::format("{}: fields {}; rays of F (blue), d (yellow), C (red)",
                                   file.title.empty() ? file.name : file.title, fields);
-    write_drawing(o.out, lens, drawing);
+    io::write_drawing(o.out, lens, drawing);
 }
 
 struct TraceOptions {
@@ -59,14 +59,14 @@ struct TraceOptions {
 
 void trace_command(const TraceOptions& o) {
     refuse_overwriting({{"-o", o.out}}, o.request, {{"the file of --rays", o.rays}});
-    check_writable(o.out);
+    io::check_writable(o.out);
     const auto lens = open_lens(o.request);
-    const Towards towards = o.reverse ? Towards::Scene : Towards::Film;
-    std::vector<TracedRay> traced;
-    for (const RayToTrace& ray : read_rays(o.rays))
-        traced.push_back(trace_ray(*lens, ray.origin_mm, ray.direction, ray.nm, towards,
-                                   o.unclipped ? Clip::No : Clip::Yes));
-    write_file_atomically(o.out, ray_table(traced, towards, lens->film_mm()));
+    const camera::Towards towards = o.reverse ? camera::Towards::Scene : camera::Towards::Film;
+    std::vector<camera::TracedRay> traced;
+    for (const io::RayToTrace& ray : io::read_rays(o.rays))
+        traced.push_back(camera::trace_ray(*lens, ray.origin_mm, ray.direction, ray.nm, towards,
+                                           o.unclipped ? camera::Clip::No : camera::Clip::Yes));
+    io::write_file_atomically(o.out, io::ray_table(traced, towards, lens->film_mm()));
 }
 
 }  // namespace
@@ -96,4 +96,4 @@ void add_lens_trace_commands(CLI::App& lens) {
     trace->callback([options] { trace_command(*options); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

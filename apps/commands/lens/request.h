@@ -10,7 +10,7 @@
 #include "camera/lens/lens.h"
 #include "io/file/overwrite.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 struct LensRequest {
     std::string lens;                   ///< name or file
@@ -20,11 +20,11 @@ struct LensRequest {
 void add_lens_request(CLI::App&, LensRequest&);
 
 /// Refuses outputs that would destroy a file of the request, an input besides, or each other.
-void refuse_overwriting(const std::vector<NamedFile>& outputs, const LensRequest&,
-                        std::vector<NamedFile> inputs = {});
+void refuse_overwriting(const std::vector<io::NamedFile>& outputs, const LensRequest&,
+                        std::vector<io::NamedFile> inputs = {});
 
 /// The lens, made ready; its file's warnings go to stderr.
-[[nodiscard]] std::shared_ptr<const Lens> open_lens(const LensRequest&);
+[[nodiscard]] std::shared_ptr<const camera::Lens> open_lens(const LensRequest&);
 
 void add_lens_table_commands(CLI::App& lens);     ///< list, show, check
 void add_lens_trace_commands(CLI::App& lens);     ///< draw, trace
@@ -34,4 +34,4 @@ void add_lens_wave_commands(CLI::App& lens);      ///< wavefront, psf
 void add_lens_focus_commands(CLI::App& lens);
 void add_lens_light_commands(CLI::App& lens);  ///< transmittance, budget, ghosts
 
-}  // namespace petzval
+}  // namespace petzval::apps

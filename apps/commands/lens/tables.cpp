@@ -21,7 +21,7 @@
 #include "io/base/printable.h"
 #include "io/lens/lens_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -29,32 +29,32 @@ using Json = nlohmann::ordered_json;
 void list_command() {
     fmt::print("{:<33} {:>6} {:>9} {:>8}  {}\n{:<33} {:>6} {:>9} {:>8}\n", "lens", "focal",
                "f-number", "angle", "design (patent)", "", "mm", "stated", "degrees");
-    for (const LensSummary& lens : list_lenses())
+    for (const io::LensSummary& lens : io::list_lenses())
         print_line(fmt::format("{:<33} {:>6g} {:>9} {:>8.4g}  {}{}", lens.name,
                                lens.focal_length_mm, fmt::format("f/{:g}", lens.fnumber),
                                2 * lens.field_half_deg, lens.title,
                                lens.patent.empty() ? "" : " (" + lens.patent + ")"));
 }
 
-std::string shape_of(const LensSurface& s) {
+std::string shape_of(const camera::LensSurface& s) {
     std::string out;
     if (s.stop) out += " stop";
-    if (s.profile == Profile::CylinderX) out += " cylinder along x";
-    if (s.profile == Profile::CylinderY) out += " cylinder along y";
+    if (s.profile == camera::Profile::CylinderX) out += " cylinder along x";
+    if (s.profile == camera::Profile::CylinderY) out += " cylinder along y";
     if (s.conic != 0) out += fmt::format(" k = {:g}", s.conic);
     for (const auto& [power, coefficient] : s.asphere)
         out += fmt::format(" A{} = {:g}", power, coefficient);
-    if (const auto* layers = std::get_if<LayerStack>(&s.coat))
+    if (const auto* layers = std::get_if<camera::LayerStack>(&s.coat))
         out += fmt::format(" coating of {} layers", layers->size());
-    for (const auto& [name, coating] : kCoatingNames)
-        if (coating != Coating::Uncoated && s.coat == SurfaceCoat(coating))
+    for (const auto& [name, coating] : camera::kCoatingNames)
+        if (coating != camera::Coating::Uncoated && s.coat == camera::SurfaceCoat(coating))
             out += fmt::format(" coating {}", name);
     return out;
 }
 
 void show_command(const LensRequest& request) {
     const auto lens = open_lens(request);
-    const Prescription& file = lens->prescription();
+    const camera::Prescription& file = lens->prescription();
     print_line(file.name + (file.title.empty() ? "" : ": ") + file.title);
     if (!file.source.empty()) print_line("source: " + file.source);
     const auto print_if = [](const char* format, std::optional<double> value) {
@@ -70,11 +70,11 @@ void show_command(const LensRequest& request) {
     fmt::print("\n{:>2} {:>12} {:>12} {:>10}  {:<20} {:>8} {:>6}\n", "", "radius mm",
                "thickness mm", "semi-diam.", "glass", "nd", "vd");
     for (size_t i = 0; i < file.surfaces.size(); ++i) {
-        const LensSurface& s = file.surfaces[i];
+        const camera::LensSurface& s = file.surfaces[i];
         const std::string radius =
             s.curvature_1_mm == 0 ? "plane" : fmt::format("{:.8g}", 1 / s.curvature_1_mm);
         const std::string glass =
-            s.glass ? fmt::format("{:<20} {:>8.6f} {:>6.2f}", visible(s.glass->name),
+            s.glass ? fmt::format("{:<20} {:>8.6f} {:>6.2f}", io::visible(s.glass->name),
                                   s.glass->index(kLineD_nm), s.glass->abbe())
                     : fmt::format("{:<36}", "");
         fmt::print("{:>2} {:>12} {:>12.8g} {:>10.6g}  {}{}\n", i, radius, s.thickness_mm,
@@ -86,53 +86,57 @@ constexpr std::array<std::pair<const char*, double>, 3> kLines{
     {{"F", kLineF_nm}, {"d", kLineD_nm}, {"C", kLineC_nm}}};
 
 struct Check {
-    std::vector<std::pair<std::string, FirstOrder>> first_order;  ///< by line, and by section
-    double traced_fnumber;                                        ///< the smallest, by real rays
-    std::optional<double> field_deg;                              ///< of the Seidel sums
-    std::optional<Seidel> seidel;
-    std::vector<StatedFigure> stated;
-    FieldAndCircle field;
+    std::vector<std::pair<std::string, camera::FirstOrder>>
+        first_order;                  ///< by line, and by section
+    double traced_fnumber;            ///< the smallest, by real rays
+    std::optional<double> field_deg;  ///< of the Seidel sums
+    std::optional<camera::Seidel> seidel;
+    std::vector<camera::StatedFigure> stated;
+    camera::FieldAndCircle field;
 };
 
-Check check(const Lens& lens) {
+Check check(const camera::Lens& lens) {
     Check out;
     const auto stop = static_cast<size_t>(lens.stop());
-    out.traced_fnumber = fnumber_of(lens, lens.prescription().surfaces[stop].semi_diameter_mm);
+    out.traced_fnumber =
+        camera::fnumber_of(lens, lens.prescription().surfaces[stop].semi_diameter_mm);
     for (const auto& [name, nm] : kLines) {
         const std::string line = fmt::format("{} {:.4f} nm", name, nm);
         if (lens.of_revolution()) {
-            out.first_order.push_back({line, first_order(lens, nm)});
+            out.first_order.push_back({line, camera::first_order(lens, nm)});
             continue;
         }
-        out.first_order.push_back({line + ", y", first_order(lens, nm, Section::Y)});
-        out.first_order.push_back({line + ", x", first_order(lens, nm, Section::X)});
+        out.first_order.push_back(
+            {line + ", y", camera::first_order(lens, nm, camera::Section::Y)});
+        out.first_order.push_back(
+            {line + ", x", camera::first_order(lens, nm, camera::Section::X)});
     }
-    out.stated = stated_figures(lens);
-    out.field = field_and_circle(lens);
+    out.stated = camera::stated_figures(lens);
+    out.field = camera::field_and_circle(lens);
     if (!lens.of_revolution()) return out;
     // The sums are for the tangent of the field, which grows without bounds.
     constexpr double widest_deg = 60;
-    out.field_deg = field_half_deg(lens.prescription());
+    out.field_deg = camera::field_half_deg(lens.prescription());
     if (out.field_deg) out.field_deg = std::min(*out.field_deg, widest_deg);
-    out.seidel = seidel(lens, std::tan(out.field_deg.value_or(0) * std::numbers::pi / 180));
+    out.seidel = camera::seidel(lens, std::tan(out.field_deg.value_or(0) * std::numbers::pi / 180));
     return out;
 }
 
-using Figure = std::pair<const char*, double FirstOrder::*>;
+using Figure = std::pair<const char*, double camera::FirstOrder::*>;
 constexpr std::array<Figure, 10> kFigures{
-    {{"focal_length_mm", &FirstOrder::focal_length_mm},
-     {"back_focus_mm", &FirstOrder::back_focus_mm},
-     {"front_focus_mm", &FirstOrder::front_focus_mm},
-     {"front_principal_mm", &FirstOrder::front_principal_mm},
-     {"rear_principal_mm", &FirstOrder::rear_principal_mm},
-     {"entrance_pupil_mm", &FirstOrder::entrance_pupil_mm},
-     {"exit_pupil_mm", &FirstOrder::exit_pupil_mm},
-     {"entrance_pupil_diameter_mm", &FirstOrder::entrance_pupil_diameter_mm},
-     {"exit_pupil_diameter_mm", &FirstOrder::exit_pupil_diameter_mm},
-     {"fnumber", &FirstOrder::fnumber}}};
+    {{"focal_length_mm", &camera::FirstOrder::focal_length_mm},
+     {"back_focus_mm", &camera::FirstOrder::back_focus_mm},
+     {"front_focus_mm", &camera::FirstOrder::front_focus_mm},
+     {"front_principal_mm", &camera::FirstOrder::front_principal_mm},
+     {"rear_principal_mm", &camera::FirstOrder::rear_principal_mm},
+     {"entrance_pupil_mm", &camera::FirstOrder::entrance_pupil_mm},
+     {"exit_pupil_mm", &camera::FirstOrder::exit_pupil_mm},
+     {"entrance_pupil_diameter_mm", &camera::FirstOrder::entrance_pupil_diameter_mm},
+     {"exit_pupil_diameter_mm", &camera::FirstOrder::exit_pupil_diameter_mm},
+     {"fnumber", &camera::FirstOrder::fnumber}}};
 constexpr std::array<const char*, 7> kSums{"S1", "S2", "S3", "S4", "S5", "C1", "C2"};
 
-void print_check(const Lens& lens, const Check& c) {
+void print_check(const camera::Lens& lens, const Check& c) {
     print_line(lens.prescription().name);
     fmt::print("\n{:<28}", "");
     for (const auto& [line, data] : c.first_order) fmt::print(" {:>16}", line);
@@ -145,14 +149,14 @@ void print_check(const Lens& lens, const Check& c) {
     fmt::print(
         "\nfnumber above is paraxial: focal length / diameter of the entrance pupil\n"
         "smallest f-number by real rays, that of --fstop: {:.4f}\n  {}\n",
-        c.traced_fnumber, kTracedFnumber);
+        c.traced_fnumber, camera::kTracedFnumber);
     if (c.seidel) {
         fmt::print("\nSeidel sums (mm), wide open, {}\n{:>7}",
                    c.field_deg ? fmt::format("half field {:g}°", *c.field_deg)
                                : "on the axis, as the file states no field",
                    "");
         for (const char* name : kSums) fmt::print(" {:>11}", name);
-        const auto row = [](const SeidelSums& sums) {
+        const auto row = [](const camera::SeidelSums& sums) {
             for (const double sum : sums) fmt::print(" {:>11.6f}", sum);
         };
         for (size_t i = 0; i < c.seidel->of_surface.size(); ++i) {
@@ -164,7 +168,7 @@ void print_check(const Lens& lens, const Check& c) {
         fmt::print("\n");
     }
     fmt::print("\n{:<33} {:>12} {:>12} {:>10}\n", "", "file states", "comes out", "differs");
-    for (const StatedFigure& figure : c.stated)
+    for (const camera::StatedFigure& figure : c.stated)
         fmt::print("{:<33} {:>12.6g} {:>12.6g} {:>8.3f} %\n", figure.name, figure.stated,
                    figure.computed, 100 * figure.relative());
     const auto reached = [](const char* before, std::optional<double> value, const char* unit) {
@@ -180,7 +184,7 @@ void print_check(const Lens& lens, const Check& c) {
                    reached("a half field of ", f.half_field_of_image_circle_deg, "°"));
 }
 
-Json json_of(const Lens& lens, const Check& c) {
+Json json_of(const camera::Lens& lens, const Check& c) {
     Json out;
     out["name"] = lens.prescription().name;
     for (const auto& [line, data] : c.first_order)
@@ -194,7 +198,7 @@ Json json_of(const Lens& lens, const Check& c) {
         sums["of_surface"] = c.seidel->of_surface;
         sums["total"] = c.seidel->total;
     }
-    for (const StatedFigure& figure : c.stated)
+    for (const camera::StatedFigure& figure : c.stated)
         out["stated"].push_back({{"figure", figure.name},
                                  {"stated", figure.stated},
                                  {"computed", figure.computed},
@@ -216,7 +220,7 @@ struct CheckOptions {
 void check_command(const CheckOptions& o) {
     const auto lens = open_lens(o.request);
     const Check result = check(*lens);
-    if (const auto blockage = find_blockage(*lens))
+    if (const auto blockage = camera::find_blockage(*lens))
         print_notice("warning: it lets no light through to the middle of the film: " +
                      blockage->text());
     if (o.json)
@@ -226,12 +230,13 @@ void check_command(const CheckOptions& o) {
         print_check(*lens, result);
     std::fflush(stdout);  // the result comes before a complaint
     if (!o.fail_above_percent) return;
-    for (const StatedFigure& figure : result.stated)
+    for (const camera::StatedFigure& figure : result.stated)
         if (!(std::fabs(100 * figure.relative()) <= *o.fail_above_percent))
-            throw InputError(o.request.lens, "",
-                             "{}: {:.6g} is stated and {:.6g} comes out, which differs "
-                             "by more than {:g} %",
-                             figure.name, figure.stated, figure.computed, *o.fail_above_percent);
+            throw io::InputError(o.request.lens, "",
+                                 "{}: {:.6g} is stated and {:.6g} comes out, which differs "
+                                 "by more than {:g} %",
+                                 figure.name, figure.stated, figure.computed,
+                                 *o.fail_above_percent);
 }
 
 }  // namespace
@@ -261,4 +266,4 @@ void add_lens_table_commands(CLI::App& lens) {
     check->callback([options] { check_command(*options); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

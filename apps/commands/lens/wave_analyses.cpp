@@ -8,27 +8,28 @@
 #include "apps/commands/lens/waves.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr int kZernikes = 22;  // up to spherical aberration of the fifth order
 
 // Wave of a line at a field, about the point where it is least.
 struct LineWave {
-    AimedBundle bundle;
-    PupilFunction pupil;
-    WavefrontFigures figures;
+    camera::AimedBundle bundle;
+    camera::PupilFunction pupil;
+    camera::WavefrontFigures figures;
 };
 
 LineWave least_wave(const FieldSetup& setup, double field_deg, double nm) {
-    AimedBundle bundle = aim(setup, field_deg, nm);
-    auto image_mm = image_point(bundle, setup.film_mm);
+    camera::AimedBundle bundle = aim(setup, field_deg, nm);
+    auto image_mm = camera::image_point(bundle, setup.film_mm);
     if (!image_mm) refuse_dark(*setup.lens, field_deg);
     for (int i = 0;; ++i) {
-        const ReferenceSphere sphere = reference_sphere(bundle, setup.film_mm, *image_mm);
-        PupilFunction pupil = pupil_function(
-            bundle, sphere, require_grid(bundle, sphere).with_side(kFiguresPupilSide));
-        const WavefrontFigures figures = wavefront_figures(pupil);
+        const camera::ReferenceSphere sphere =
+            camera::reference_sphere(bundle, setup.film_mm, *image_mm);
+        camera::PupilFunction pupil = camera::pupil_function(
+            bundle, sphere, require_grid(bundle, sphere).with_side(camera::kFiguresPupilSide));
+        const camera::WavefrontFigures figures = camera::wavefront_figures(pupil);
         if (!(figures.rms_mm >= 0)) refuse_dark(*setup.lens, field_deg);
         if (i == 1) return {std::move(bundle), std::move(pupil), figures};
         image_mm = figures.image_mm;
@@ -61,8 +62,8 @@ void print_zernikes(const std::vector<std::string>& heads,
 
 // Map of the opd over the pupil, as seen from the image point; `from` is where it begins, and then
 // where it ends.
-void add_map(Plot& plot, const PupilFunction& pupil, double& from) {
-    PlotSeries cells{.style = PlotStyle::Cells};
+void add_map(io::Plot& plot, const camera::PupilFunction& pupil, double& from) {
+    io::PlotSeries cells{.style = io::PlotStyle::Cells};
     const double half = pupil.grid.step * pupil.grid.side / 2;
     const auto middle = pupil.cosines(pupil.light.size() / 2 + size_t(pupil.grid.side) / 2);
     for (size_t cell = 0; cell < pupil.light.size(); ++cell) {
@@ -84,14 +85,15 @@ Found wavefront_analysis(const AnalysisOptions& o) {
     const auto light = light_of(o, *setup.lens);
     Found out;
     out.names = {"field_deg", "nm", "tangential", "stop_radii", "opd_mm"};
-    Plot maps{.title = title_of(
-                  *setup.lens, fmt::format("wavefront at {}, fields {}, left to right",
-                                           light[light.size() / 2].name, listed(setup.fields_deg))),
-              .x_label = "p (direction cosines, side by side)",
-              .y_label = "q from the middle (direction cosine)",
-              .series = {},
-              .equal_scale = true,
-              .value_label = "ahead of the sphere (waves)"};
+    io::Plot maps{
+        .title = title_of(*setup.lens,
+                          fmt::format("wavefront at {}, fields {}, left to right",
+                                      light[light.size() / 2].name, listed(setup.fields_deg))),
+        .x_label = "p (direction cosines, side by side)",
+        .y_label = "q from the middle (direction cosine)",
+        .series = {},
+        .equal_scale = true,
+        .value_label = "ahead of the sphere (waves)"};
     double maps_end = 0;
     std::vector<std::string> heads;
     std::vector<std::vector<double>> columns;
@@ -105,16 +107,16 @@ Found wavefront_analysis(const AnalysisOptions& o) {
             const LineWave wave = least_wave(setup, deg, line.nm);
             table += figures_row(deg, line, wave);
             heads.push_back(fmt::format("{:.4g}° {}", deg, line.name));
-            columns.push_back(zernike_coefficients_mm(wave.pupil, kZernikes));
+            columns.push_back(camera::zernike_coefficients_mm(wave.pupil, kZernikes));
             for (double& c : columns.back()) c /= wave.pupil.wavelength_mm();
-            const ReferenceSphere sphere =
-                reference_sphere(wave.bundle, setup.film_mm, centre.figures.image_mm);
-            for (const Section along : {setup.section, across(setup)}) {
+            const camera::ReferenceSphere sphere =
+                camera::reference_sphere(wave.bundle, setup.film_mm, centre.figures.image_mm);
+            for (const camera::Section along : {setup.section, across(setup)}) {
                 const bool tangential = along == setup.section;
-                PlotSeries fan{.style = PlotStyle::Lines,
-                               .label = fmt::format("{:.4g}° {} {}", deg, line.name,
-                                                    tangential ? "tangential" : "sagittal")};
-                for (const OpdPoint& point : opd_fan(wave.bundle, sphere, along)) {
+                io::PlotSeries fan{.style = io::PlotStyle::Lines,
+                                   .label = fmt::format("{:.4g}° {} {}", deg, line.name,
+                                                        tangential ? "tangential" : "sagittal")};
+                for (const camera::OpdPoint& point : camera::opd_fan(wave.bundle, sphere, along)) {
                     fan.points.push_back({point.stop, point.opd_mm / wave.pupil.wavelength_mm()});
                     out.rows.push_back(
                         {deg, line.nm, double(tangential), point.stop, point.opd_mm});
@@ -126,7 +128,7 @@ Found wavefront_analysis(const AnalysisOptions& o) {
     }
     fmt::print("{}", table);
     print_zernikes(heads, columns);
-    if (!o.map.empty()) write_plot(o.map, maps);
+    if (!o.map.empty()) io::write_plot(o.map, maps);
     out.plot.title = title_of(*setup.lens, "wavefront fans");
     out.plot.x_label = "where the ray crosses the stop (radii)";
     out.plot.y_label = "ahead of the reference sphere (waves)";
@@ -134,8 +136,8 @@ Found wavefront_analysis(const AnalysisOptions& o) {
 }
 
 // Light per mm^2 of all lines together at a point about the image point.
-double white_per_mm2(const std::vector<PointSpread>& spreads, const std::vector<LightLine>& light,
-                     double x_mm, double y_mm) {
+double white_per_mm2(const std::vector<camera::PointSpread>& spreads,
+                     const std::vector<LightLine>& light, double x_mm, double y_mm) {
     double sum = 0;
     for (size_t i = 0; i < spreads.size(); ++i)
         sum += light[i].weight * spreads[i].per_mm2(x_mm, y_mm);
@@ -149,22 +151,25 @@ Found psf_analysis(const AnalysisOptions& o) {
     const auto light = light_of(o, *setup.lens);
     Found out;
     out.names = {"field_deg", "x_mm", "y_mm", "per_mm2"};
-    std::vector<std::vector<PointSpread>> of_field;
+    std::vector<std::vector<camera::PointSpread>> of_field;
     double half_mm = 0, window_mm = INFINITY;
     std::string table =
         fmt::format("film at {:.6f} mm\n{:>10} {:>11} {:>11} {:>14} {:>14} {:>14}\n", setup.film_mm,
                     "field (°)", "x (mm)", "y (mm)", "half in (µm)", "80 % in (µm)", "Airy (µm)");
     for (const double deg : setup.fields_deg) {
         const auto waves = require_waves(setup, deg, light);
-        std::vector<PointSpread> spreads;
+        std::vector<camera::PointSpread> spreads;
         double airy_mm = 0;
         for (size_t i = 0; i < waves.size(); ++i) {
-            spreads.push_back(point_spread(waves[i], std::max(finest, 2 * waves[i].grid.side)));
+            spreads.push_back(
+                camera::point_spread(waves[i], std::max(finest, 2 * waves[i].grid.side)));
             airy_mm +=
-                light[i].weight * airy_radius_mm(light[i].nm, wavefront_figures(waves[i]).fnumber);
+                light[i].weight *
+                camera::airy_radius_mm(light[i].nm, camera::wavefront_figures(waves[i]).fnumber);
             window_mm = std::min(window_mm, spreads[i].step_mm * (spreads[i].side / 2 - 1));
         }
-        const auto radii_mm = radii_of_shares_mm(spreads, weights_of(light), std::array{0.5, 0.8});
+        const auto radii_mm =
+            camera::radii_of_shares_mm(spreads, weights_of(light), std::array{0.5, 0.8});
         const auto& image_mm = waves[0].sphere.image_mm;
         table += fmt::format("{:>10.4g} {:>11.6f} {:>11.6f} {:>14.4f} {:>14.4f} {:>14.4f}\n", deg,
                              shown(image_mm[0]), shown(image_mm[1]), kMicrons * radii_mm[0],
@@ -175,7 +180,7 @@ Found psf_analysis(const AnalysisOptions& o) {
     fmt::print("{}", table);
     half_mm = std::min(half_mm, window_mm);
     for (size_t field = 0; field < of_field.size(); ++field) {
-        PlotSeries cells{.style = PlotStyle::Cells};
+        io::PlotSeries cells{.style = io::PlotStyle::Cells};
         double peak = 0;
         for (int j = 0; j < drawn; ++j)
             for (int i = 0; i < drawn; ++i) {
@@ -223,4 +228,4 @@ void add_lens_wave_commands(CLI::App& lens) {
     add_light(*lens.get_subcommand("psf"), *psf);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,12 +9,12 @@
 #include "apps/cli/console.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr double kLeast_nm = 100, kMost_nm = 20000;
 
-void warn_beyond_range(const Lens& lens, double nm) {
+void warn_beyond_range(const camera::Lens& lens, double nm) {
     for (const Glass& glass : lens.media())
         if (nm < glass.first_nm || nm > glass.last_nm)
             print_notice(
@@ -25,20 +25,21 @@ void warn_beyond_range(const Lens& lens, double nm) {
 
 // Middle of the image of all lines together, by rays.
 std::array<double, 2> middle_of(const FieldSetup& setup, double field_deg,
-                                const std::vector<AimedBundle>& bundles,
+                                const std::vector<camera::AimedBundle>& bundles,
                                 const std::vector<LightLine>& light) {
     std::array<double, 2> middle{};
     for (size_t i = 0; i < light.size(); ++i) {
-        const auto point = image_point(bundles[i], setup.film_mm);
+        const auto point = camera::image_point(bundles[i], setup.film_mm);
         if (!point) refuse_dark(*setup.lens, field_deg);
         for (size_t k = 0; k < 2; ++k) middle[k] += light[i].weight * (*point)[k];
     }
     return middle;
 }
 
-double radius_of_half_mm(std::vector<BundleRay> rays, const std::array<double, 2>& middle_mm) {
+double radius_of_half_mm(std::vector<camera::BundleRay> rays,
+                         const std::array<double, 2>& middle_mm) {
     std::vector<double> radii;
-    for (const BundleRay& ray : rays)
+    for (const camera::BundleRay& ray : rays)
         radii.push_back(std::hypot(ray.film_mm[0] - middle_mm[0], ray.film_mm[1] - middle_mm[1]));
     const auto half = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
     std::nth_element(radii.begin(), half, radii.end());
@@ -53,13 +54,14 @@ void add_light(CLI::App& command, AnalysisOptions& options) {
                        "(default: F, d and C in equal parts)");
 }
 
-std::vector<LightLine> light_of(const AnalysisOptions& o, const Lens& lens) {
+std::vector<LightLine> light_of(const AnalysisOptions& o, const camera::Lens& lens) {
     std::vector<LightLine> out;
     if (o.light.empty())
-        for (const SpectralLine& line : kSpectralLines) out.push_back({line.name, line.nm, 1});
+        for (const camera::SpectralLine& line : camera::kSpectralLines)
+            out.push_back({line.name, line.nm, 1});
     else
-        for (const std::string_view part : split(o.light, ',')) {
-            const auto words = split(part, ':');
+        for (const std::string_view part : io::split(o.light, ',')) {
+            const auto words = io::split(part, ':');
             if (words.size() > 2)
                 throw ValueError("--light", o.light + " is not like 450:0.3,550:1,650:0.5");
             const double nm =
@@ -81,63 +83,70 @@ std::vector<double> weights_of(const std::vector<LightLine>& light) {
     return out;
 }
 
-double ray_contrast(const std::vector<std::vector<BundleRay>>& rays,
-                    const std::vector<LightLine>& light, double cycles_per_mm, Section along) {
+double ray_contrast(const std::vector<std::vector<camera::BundleRay>>& rays,
+                    const std::vector<LightLine>& light, double cycles_per_mm,
+                    camera::Section along) {
     std::complex<double> sum;
     for (size_t i = 0; i < light.size(); ++i)
-        sum += light[i].weight * geometric_transfer(rays[i], cycles_per_mm, along);
+        sum += light[i].weight * camera::geometric_transfer(rays[i], cycles_per_mm, along);
     return std::abs(sum);
 }
 
-PupilGrid require_grid(const AimedBundle& bundle, const ReferenceSphere& sphere, double depth_mm) {
-    const auto grid = pupil_grid(bundle, sphere, depth_mm);
+camera::PupilGrid require_grid(const camera::AimedBundle& bundle,
+                               const camera::ReferenceSphere& sphere, double depth_mm) {
+    const auto grid = camera::pupil_grid(bundle, sphere, depth_mm);
     if (!grid)
-        throw ArgumentError(bundle.lens().prescription().name, "",
-                            "the rays of the field {:g}° leave it parallel: there is no image",
-                            bundle.object().field_deg);
+        throw io::ArgumentError(bundle.lens().prescription().name, "",
+                                "the rays of the field {:g}° leave it parallel: there is no image",
+                                bundle.object().field_deg);
     return *grid;
 }
 
-std::vector<PupilFunction> field_waves(const FieldSetup& setup, double field_deg,
-                                       const std::vector<LightLine>& light, double depth_mm) {
-    std::vector<AimedBundle> bundles;
+std::vector<camera::PupilFunction> field_waves(const FieldSetup& setup, double field_deg,
+                                               const std::vector<LightLine>& light,
+                                               double depth_mm) {
+    std::vector<camera::AimedBundle> bundles;
     for (const LightLine& line : light) bundles.push_back(aim(setup, field_deg, line.nm));
     const auto image_mm = middle_of(setup, field_deg, bundles, light);
-    std::vector<PupilFunction> out;
-    for (const AimedBundle& bundle : bundles) {
-        const ReferenceSphere sphere = reference_sphere(bundle, setup.film_mm, image_mm);
-        const PupilGrid grid = require_grid(bundle, sphere, depth_mm);
+    std::vector<camera::PupilFunction> out;
+    for (const camera::AimedBundle& bundle : bundles) {
+        const camera::ReferenceSphere sphere =
+            camera::reference_sphere(bundle, setup.film_mm, image_mm);
+        const camera::PupilGrid grid = require_grid(bundle, sphere, depth_mm);
         if (!grid.resolves()) return {};
-        out.push_back(pupil_function(bundle, sphere, grid));
+        out.push_back(camera::pupil_function(bundle, sphere, grid));
     }
     return out;
 }
 
-std::vector<PupilFunction> require_waves(const FieldSetup& setup, double field_deg,
-                                         const std::vector<LightLine>& light, double depth_mm) {
+std::vector<camera::PupilFunction> require_waves(const FieldSetup& setup, double field_deg,
+                                                 const std::vector<LightLine>& light,
+                                                 double depth_mm) {
     auto out = field_waves(setup, field_deg, light, depth_mm);
     if (out.empty())
-        throw ArgumentError(setup.lens->prescription().name, "",
-                            "the wave of the field {:g}° bends too much for a grid of {} x {} "
-                            "cells, and rays alone are near the truth; give a higher --fstop",
-                            field_deg, kMostPupilSide, kMostPupilSide);
+        throw io::ArgumentError(setup.lens->prescription().name, "",
+                                "the wave of the field {:g}° bends too much for a grid of {} x {} "
+                                "cells, and rays alone are near the truth; give a higher --fstop",
+                                field_deg, camera::kMostPupilSide, camera::kMostPupilSide);
     return out;
 }
 
-WaveContrast::WaveContrast(const std::vector<PupilFunction>& waves,
+WaveContrast::WaveContrast(const std::vector<camera::PupilFunction>& waves,
                            const std::vector<LightLine>& light) {
     for (size_t i = 0; i < waves.size(); ++i) {
-        const PointSpread spread = point_spread(waves[i], 2 * waves[i].grid.side);
-        lines_.push_back({line_spread(spread, Section::X), line_spread(spread, Section::Y)});
+        const camera::PointSpread spread = camera::point_spread(waves[i], 2 * waves[i].grid.side);
+        lines_.push_back({camera::line_spread(spread, camera::Section::X),
+                          camera::line_spread(spread, camera::Section::Y)});
         weights_.push_back(light[i].weight);
     }
 }
 
-double WaveContrast::at(double cycles_per_mm, Section along) const {
+double WaveContrast::at(double cycles_per_mm, camera::Section along) const {
     if (cycles_per_mm == 0) return 1;
     std::complex<double> sum;
     for (size_t i = 0; i < lines_.size(); ++i)
-        sum += weights_[i] * transfer(lines_[i][along == Section::X ? 0 : 1], cycles_per_mm);
+        sum += weights_[i] *
+               camera::transfer(lines_[i][along == camera::Section::X ? 0 : 1], cycles_per_mm);
     return std::abs(sum);
 }
 
@@ -153,14 +162,16 @@ void print_wave_spots(const FieldSetup& setup) {
             fmt::print(
                 "{:>10.4g} {:>12.4f} {:>12}  the wave bends too much to tell: rays are "
                 "near the truth\n",
-                deg, kMicrons * radius_of_half_mm(rays, spot_size(rays).centroid_mm), "");
+                deg, kMicrons * radius_of_half_mm(rays, camera::spot_size(rays).centroid_mm), "");
             continue;
         }
-        const PupilFunction& wave = waves[0];
+        const camera::PupilFunction& wave = waves[0];
         const double by_rays = radius_of_half_mm(rays, wave.sphere.image_mm);
-        const std::array spread{point_spread(wave, std::max(finest, 2 * wave.grid.side))};
-        const double by_waves = radii_of_shares_mm(spread, weights_of(line_d), std::array{0.5})[0];
-        const double airy_mm = airy_radius_mm(kLineD_nm, wavefront_figures(wave).fnumber);
+        const std::array spread{camera::point_spread(wave, std::max(finest, 2 * wave.grid.side))};
+        const double by_waves =
+            camera::radii_of_shares_mm(spread, weights_of(line_d), std::array{0.5})[0];
+        const double airy_mm =
+            camera::airy_radius_mm(kLineD_nm, camera::wavefront_figures(wave).fnumber);
         fmt::print("{:>10.4g} {:>12.4f} {:>12.4f}  {}; Airy's disc has a radius of {:.4f}\n", deg,
                    kMicrons * by_rays, kMicrons * by_waves,
                    by_waves < alike * by_rays
@@ -194,4 +205,4 @@ void print_wave_contrast(const FieldSetup& setup, const std::vector<LightLine>& 
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 #include "core/traversal/bvh.h"
 #include "io/gltf/gltf.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Distance that --focus auto finds, or why it finds none.
 struct FoundFocus {
@@ -20,7 +20,8 @@ struct FoundFocus {
 /// a thin lens of its angle of view, in a picture of the default size. camera: nullptr for the one
 /// that frames a scene without cameras. The scene must be finished and in bvh; scene_file is its
 /// name, scope where the files may lie that the camera names.
-[[nodiscard]] FoundFocus find_auto_focus(const GltfCamera* camera, const std::string& scene_file,
-                                         FileScope scope, const Scene&, const Bvh&);
+[[nodiscard]] FoundFocus find_auto_focus(const io::GltfCamera* camera,
+                                         const std::string& scene_file, io::FileScope scope,
+                                         const Scene&, const Bvh&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -15,31 +15,31 @@
 #include "io/file/read_file.h"
 #include "io/glass/glass_lookup.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSinglet = "singlet:";
 
-const GltfCamera& find_camera(const std::string& wanted, const std::string& scene,
-                              const std::vector<GltfCamera>& cameras) {
+const io::GltfCamera& find_camera(const std::string& wanted, const std::string& scene,
+                                  const std::vector<io::GltfCamera>& cameras) {
     std::vector<std::string> names;
     names.reserve(cameras.size());
-    for (const GltfCamera& camera : cameras) names.push_back(camera.name);
-    if (const auto index = find_named(wanted, names)) return cameras[*index];
-    throw ArgumentError(scene, "",
-                        no_such("camera", wanted, names, "the file has none, use ⟨look-at⟩"));
+    for (const io::GltfCamera& camera : cameras) names.push_back(camera.name);
+    if (const auto index = io::find_named(wanted, names)) return cameras[*index];
+    throw io::ArgumentError(
+        scene, "", io::no_such("camera", wanted, names, "the file has none, use ⟨look-at⟩"));
 }
 
-std::string extras_of(const GltfCamera& camera) {
-    return fmt::format("extras.petzval of camera \"{}\"", printable(camera.name));
+std::string extras_of(const io::GltfCamera& camera) {
+    return fmt::format("extras.petzval of camera \"{}\"", io::printable(camera.name));
 }
 
 // Whether a camera means a file by a name, and not a lens that ships or a shape: by how it is
 // written, or there is such a file beside the scene. Nothing is looked for elsewhere.
 bool means_file(const std::string& name, const fs::path& beside, bool is_iris) {
-    const std::string text = lower(name);
+    const std::string text = io::lower(name);
     for (const std::string_view prefix :
          {kSinglet, std::string_view("star:"), std::string_view("polygon:")})
         if (text.starts_with(prefix)) return false;
@@ -51,15 +51,15 @@ bool means_file(const std::string& name, const fs::path& beside, bool is_iris) {
 }
 
 // What a camera of a scene names: the path of a file, which lies beside the scene, or a name.
-std::string beside(const fs::path& scene, FileScope scope, const GltfCamera& camera,
+std::string beside(const fs::path& scene, io::FileScope scope, const io::GltfCamera& camera,
                    const std::string& name, bool is_iris) {
     const fs::path folder = scene.parent_path(), path = folder / name;
     if (!means_file(name, path, is_iris)) return name;
     const auto refuse = [&](const char* why) {
-        return InputError(scene.string(), extras_of(camera),
-                          fmt::format("\"{}\" {}", printable(name), why));
+        return io::InputError(scene.string(), extras_of(camera),
+                              fmt::format("\"{}\" {}", io::printable(name), why));
     };
-    if (scope == FileScope::Confined && !lies_within(path, folder))
+    if (scope == io::FileScope::Confined && !io::lies_within(path, folder))
         throw refuse("lies outside the folder of the scene, and ⟨confine⟩ allows no file there");
     if (fs::path(name).is_absolute())
         throw refuse("is an absolute path, which is not read; put the file beside the scene");
@@ -67,9 +67,9 @@ std::string beside(const fs::path& scene, FileScope scope, const GltfCamera& cam
 }
 
 // Takes from the file's camera what the user has not said.
-void take_extras(const GltfCamera& camera, const std::filesystem::path& scene, FileScope scope,
-                 CameraRequest& asked) {
-    const CameraExtras& file = camera.extras;
+void take_extras(const io::GltfCamera& camera, const std::filesystem::path& scene,
+                 io::FileScope scope, CameraRequest& asked) {
+    const io::CameraExtras& file = camera.extras;
     if (!asked.lens && file.lens) asked.lens = beside(scene, scope, camera, *file.lens, false);
     if (!asked.sensor_mm) asked.sensor_mm = file.sensor_mm;
     if (asked.lens == "pinhole") return;
@@ -81,18 +81,18 @@ void take_extras(const GltfCamera& camera, const std::filesystem::path& scene, F
         asked.aperture = beside(scene, scope, camera, *file.aperture, true);
 }
 
-std::vector<AgfCatalog> open_catalogs(const CameraRequest& asked) {
-    std::vector<AgfCatalog> catalogs;
+std::vector<io::AgfCatalog> open_catalogs(const CameraRequest& asked) {
+    std::vector<io::AgfCatalog> catalogs;
     for (const auto& file : asked.glasses) catalogs.emplace_back(file);
     return catalogs;
 }
 
-SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
+SingleLens parse_singlet(const std::string& text, io::LensGlasses& glasses) {
     const auto refuse = [&](const std::string& why) {
-        return ArgumentError("⟨lens⟩", text,
-                             why +
-                                 "; it must read singlet:GLASS[,BENDING] or "
-                                 "singlet:GLASS,R1,R2 with radii in mm (inf: flat)");
+        return io::ArgumentError("⟨lens⟩", text,
+                                 why +
+                                     "; it must read singlet:GLASS[,BENDING] or "
+                                     "singlet:GLASS,R1,R2 with radii in mm (inf: flat)");
     };
     if (text.ends_with(',')) throw refuse("nothing follows the last comma");
     std::istringstream words(text.substr(kSinglet.size()));
@@ -112,7 +112,7 @@ SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
     }
     if (numbers.size() > 2) throw refuse("has too many numbers");
     SingleLens lens;
-    FoundGlass found = glasses.named(name);
+    io::FoundGlass found = glasses.named(name);
     if (!found.glass) throw refuse(found.error);
     lens.glass = *std::move(found.glass);
     if (numbers.size() == 1) {
@@ -128,20 +128,20 @@ SingleLens parse_singlet(const std::string& text, LensGlasses& glasses) {
 }
 
 // The angle of view that a lens is scaled to.
-std::optional<float> fit_yfov_rad(const CameraRequest& asked, const GltfCamera* from) {
+std::optional<float> fit_yfov_rad(const CameraRequest& asked, const io::GltfCamera* from) {
     if (asked.fit != Fit::Fov) return std::nullopt;
     if (asked.fov_deg) return *asked.fov_deg * kPi / 180.f;
     if (from) return from->yfov_rad;
-    throw ArgumentError("⟨fit⟩", "", "no camera gives an angle of view: give ⟨fov⟩ too");
+    throw io::ArgumentError("⟨fit⟩", "", "no camera gives an angle of view: give ⟨fov⟩ too");
 }
 
-Optics optics_of(const CameraRequest& asked, const GltfCamera* from, float aspect) {
+Optics optics_of(const CameraRequest& asked, const io::GltfCamera* from, float aspect) {
     if (!asked.lens)
         return asked.fstop || asked.lens_radius_m ? Optics(IdealLens()) : Optics(NoLens());
     if (*asked.lens == "pinhole") return NoLens();
     if (*asked.lens == "thin") return IdealLens();
-    const std::vector<AgfCatalog> catalogs = open_catalogs(asked);
-    LensGlasses glasses(catalogs);
+    const std::vector<io::AgfCatalog> catalogs = open_catalogs(asked);
+    io::LensGlasses glasses(catalogs);
     if (asked.lens->starts_with(kSinglet)) return parse_singlet(*asked.lens, glasses);
     return load_lens_for_film(*asked.lens, catalogs, asked.sensor_mm, aspect,
                               fit_yfov_rad(asked, from));
@@ -150,28 +150,29 @@ Optics optics_of(const CameraRequest& asked, const GltfCamera* from, float aspec
 // Refuses what only a lens of a prescription can do.
 void check_no_prescription(const CameraRequest& asked, bool has_glass) {
     const auto refuse = [](const char* option) {
-        throw ArgumentError(option, "",
-                            "needs a lens that is traced surface by surface: give ⟨lens⟩ NAME or "
-                            "FILE");
+        throw io::ArgumentError(
+            option, "",
+            "needs a lens that is traced surface by surface: give ⟨lens⟩ NAME or "
+            "FILE");
     };
     if (asked.fit == Fit::Fov) refuse("⟨fit⟩");
-    if (asked.coating != Coating::Ideal) refuse("⟨coating⟩");
+    if (asked.coating != camera::Coating::Ideal) refuse("⟨coating⟩");
     if (asked.ghosts == GhostUse::Only) refuse("⟨ghosts⟩ only");
-    if (asked.precision != Precision::Float) refuse("⟨lens-precision⟩");
-    if (asked.focus_by != FocusBy::Paraxial) refuse("⟨focus-by⟩");
+    if (asked.precision != camera::Precision::Float) refuse("⟨lens-precision⟩");
+    if (asked.focus_by != camera::FocusBy::Paraxial) refuse("⟨focus-by⟩");
     if (!asked.glasses.empty() && !has_glass) refuse("⟨glasses⟩");
 }
 
 void check_pinhole(const CameraRequest& asked) {
     const auto refuse = [](const char* option, const std::string& why) {
-        throw ArgumentError(option, "", why);
+        throw io::ArgumentError(option, "", why);
     };
     if (asked.fstop || asked.lens_radius_m)
         refuse("⟨lens⟩", "a pinhole has no iris: leave out ⟨fstop⟩ and ⟨lens-radius⟩");
     if (asked.focus) refuse("⟨focus⟩", "a pinhole has no focus: give ⟨fstop⟩ or ⟨lens-radius⟩ too");
     if (asked.aperture)
         refuse("⟨aperture⟩", "a pinhole has no iris: give ⟨fstop⟩, ⟨lens-radius⟩ or ⟨lens⟩ too");
-    if (asked.aperture_scale != ApertureScale::EqualArea || asked.iris_sampling)
+    if (asked.aperture_scale != camera::ApertureScale::EqualArea || asked.iris_sampling)
         refuse(asked.iris_sampling ? "⟨iris-sampling⟩" : "⟨aperture-scale⟩",
                "a pinhole has no iris: give ⟨fstop⟩, ⟨lens-radius⟩ or ⟨lens⟩ too");
     if (asked.film_distance_mm)
@@ -185,42 +186,43 @@ void check_thin(const CameraModel& model) {
     const CameraRequest& asked = model.asked;
     const auto* single = std::get_if<SingleLens>(&model.optics);
     if (!asked.fstop && !asked.lens_radius_m)
-        throw ArgumentError("⟨lens⟩", *asked.lens, "needs ⟨fstop⟩ or ⟨lens-radius⟩");
+        throw io::ArgumentError("⟨lens⟩", *asked.lens, "needs ⟨fstop⟩ or ⟨lens-radius⟩");
     const bool focal_given = asked.focal_length_mm || (single && single->radii_mm);
     if (single && single->radii_mm && asked.focal_length_mm)
-        throw ArgumentError("⟨focal-length⟩", "", "follows from the radii of the singlet");
+        throw io::ArgumentError("⟨focal-length⟩", "", "follows from the radii of the singlet");
     if (!asked.film_distance_mm) return;
     if (asked.fov_deg)
-        throw ArgumentError("⟨fov⟩", "", "follows from ⟨film-distance⟩ and the sensor");
+        throw io::ArgumentError("⟨fov⟩", "", "follows from ⟨film-distance⟩ and the sensor");
     if (focal_given && asked.focus)
-        throw ArgumentError("⟨focus⟩", "", "follows from ⟨film-distance⟩ and the focal length");
+        throw io::ArgumentError("⟨focus⟩", "", "follows from ⟨film-distance⟩ and the focal length");
 }
 
 void check_lens(const CameraRequest& asked) {
     if (asked.natural_vignetting)
-        throw ArgumentError("⟨natural-vignetting⟩", "",
-                            "a traced lens always has its own: leave it out");
+        throw io::ArgumentError("⟨natural-vignetting⟩", "",
+                                "a traced lens always has its own: leave it out");
     if (asked.focal_length_mm || asked.lens_radius_m || asked.film_distance_mm ||
         (asked.fov_deg && asked.fit != Fit::Fov))
-        throw ArgumentError("⟨lens⟩", *asked.lens,
-                            "gives the angle of view and the focal length: leave out ⟨fov⟩, "
-                            "⟨focal-length⟩, ⟨lens-radius⟩ and ⟨film-distance⟩, or say ⟨fit⟩=fov");
+        throw io::ArgumentError(
+            "⟨lens⟩", *asked.lens,
+            "gives the angle of view and the focal length: leave out ⟨fov⟩, "
+            "⟨focal-length⟩, ⟨lens-radius⟩ and ⟨film-distance⟩, or say ⟨fit⟩=fov");
 }
 
 }  // namespace
 
-void check_camera_files(const fs::path& scene, FileScope scope,
-                        const std::vector<GltfCamera>& cameras) {
-    if (scope == FileScope::Anywhere) return;
-    for (const GltfCamera& camera : cameras) {
-        const CameraExtras& file = camera.extras;
+void check_camera_files(const fs::path& scene, io::FileScope scope,
+                        const std::vector<io::GltfCamera>& cameras) {
+    if (scope == io::FileScope::Anywhere) return;
+    for (const io::GltfCamera& camera : cameras) {
+        const io::CameraExtras& file = camera.extras;
         if (file.lens) static_cast<void>(beside(scene, scope, camera, *file.lens, false));
         if (file.aperture) static_cast<void>(beside(scene, scope, camera, *file.aperture, true));
     }
 }
 
 std::string CameraModel::dispersive_lens() const {
-    if (asked.dispersion == DispersionMode::Shared) return "";
+    if (asked.dispersion == camera::DispersionMode::Shared) return "";
     if (const auto* lens = std::get_if<LoadedLens>(&optics))
         return lens->disperses() ? lens->name() : "";
     if (const auto* lens = std::get_if<SingleLens>(&optics))
@@ -229,7 +231,7 @@ std::string CameraModel::dispersive_lens() const {
 }
 
 CameraModel choose_camera_model(const CameraRequest& request, const std::filesystem::path& scene,
-                                FileScope scope, const std::vector<GltfCamera>& cameras,
+                                io::FileScope scope, const std::vector<io::GltfCamera>& cameras,
                                 float aspect) {
     CameraModel model;
     model.asked = request;
@@ -242,19 +244,20 @@ CameraModel choose_camera_model(const CameraRequest& request, const std::filesys
         if (asked.fstop || asked.lens_radius_m || asked.fov_deg || asked.focal_length_mm ||
             asked.focus || asked.aperture || asked.film_distance_mm || asked.sensor_mm ||
             asked.natural_vignetting || (asked.lens && *asked.lens != "pinhole"))
-            throw ArgumentError(scene.string(), "",
-                                fmt::format("camera \"{}\" is orthographic: it takes neither a "
-                                            "lens, its focus, sensor or vignetting, nor an angle "
-                                            "of view",
-                                            printable(model.from->name)));
+            throw io::ArgumentError(
+                scene.string(), "",
+                fmt::format("camera \"{}\" is orthographic: it takes neither a "
+                            "lens, its focus, sensor or vignetting, nor an angle "
+                            "of view",
+                            io::printable(model.from->name)));
     } else if (model.from) {
         take_extras(*model.from, scene, scope, asked);
     }
     try {
         model.optics = optics_of(asked, model.from, aspect);
-    } catch (const ArgumentError& error) {
+    } catch (const io::ArgumentError& error) {
         if (request.lens || !asked.lens) throw;
-        throw InputError(scene.string(), extras_of(*model.from), error.what());
+        throw io::InputError(scene.string(), extras_of(*model.from), error.what());
     }
     if (!std::holds_alternative<LoadedLens>(model.optics))
         check_no_prescription(asked, std::holds_alternative<SingleLens>(model.optics));
@@ -267,4 +270,4 @@ CameraModel choose_camera_model(const CameraRequest& request, const std::filesys
     return model;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -14,7 +14,7 @@
 #include "core/spectrum/glass.h"
 #include "io/gltf/gltf.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 struct NoLens {};     ///< a pinhole
 struct IdealLens {};  ///< thin, without aberrations
@@ -27,8 +27,8 @@ struct SingleLens {
 using Optics = std::variant<NoLens, IdealLens, SingleLens, LoadedLens>;
 
 struct CameraModel {
-    CameraRequest asked;               ///< the user's request, and the file's where that is silent
-    const GltfCamera* from = nullptr;  ///< absent: --look-at, or framed from the scene's bounds
+    CameraRequest asked;  ///< the user's request, and the file's where that is silent
+    const io::GltfCamera* from = nullptr;  ///< absent: --look-at, or framed from the scene's bounds
     Optics optics;
 
     [[nodiscard]] bool has_iris() const { return !std::holds_alternative<NoLens>(optics); }
@@ -40,12 +40,13 @@ struct CameraModel {
 /// picture's. cameras must outlive the model. Throws InputError, and ArgumentError where what is
 /// asked for does not go together.
 [[nodiscard]] CameraModel choose_camera_model(const CameraRequest&,
-                                              const std::filesystem::path& scene, FileScope,
-                                              const std::vector<GltfCamera>& cameras, float aspect);
+                                              const std::filesystem::path& scene, io::FileScope,
+                                              const std::vector<io::GltfCamera>& cameras,
+                                              float aspect);
 
 /// Throws InputError where a camera of a confined scene names a file outside the scene's folder,
 /// whether or not it is the one that is rendered.
-void check_camera_files(const std::filesystem::path& scene, FileScope,
-                        const std::vector<GltfCamera>&);
+void check_camera_files(const std::filesystem::path& scene, io::FileScope,
+                        const std::vector<io::GltfCamera>&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,10 +6,10 @@
 #include "camera/lens/focus.h"
 #include "io/base/format.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
-void describe_iris(const CameraReport& c, Metadata& m) {
+void describe_iris(const CameraReport& c, io::Metadata& m) {
     m.emplace_back("petzval:aperture", c.asked.aperture.value_or("circle"));
     m.emplace_back("petzval:apertureScale", name_of(c.asked.aperture_scale));
     if (c.asked.iris_sampling)
@@ -22,7 +22,7 @@ void describe_iris(const CameraReport& c, Metadata& m) {
     }
 }
 
-void describe_glass(const CameraReport& c, Metadata& m) {
+void describe_glass(const CameraReport& c, io::Metadata& m) {
     m.emplace_back("petzval:lens", c.lens);
     m.emplace_back("petzval:film_mm", static_cast<float>(c.film_mm));
     m.emplace_back("petzval:stopRadius_mm", static_cast<float>(c.stop_radius_mm));
@@ -36,10 +36,10 @@ void describe_glass(const CameraReport& c, Metadata& m) {
 
 }  // namespace
 
-void describe_camera(const CameraReport& c, Metadata& m) {
+void describe_camera(const CameraReport& c, io::Metadata& m) {
     m.emplace_back("petzval:camera", c.name);
-    m.emplace_back("petzval:cameraEye_m", with_commas(c.eye));
-    m.emplace_back("petzval:cameraTarget_m", with_commas(c.target));
+    m.emplace_back("petzval:cameraEye_m", io::with_commas(c.eye));
+    m.emplace_back("petzval:cameraTarget_m", io::with_commas(c.target));
     if (c.asked.pose) m.emplace_back("petzval:cameraPose", text_of_pose(*c.asked.pose));
     if (c.asked.orbit_deg) m.emplace_back("petzval:orbit_deg", *c.asked.orbit_deg);
     if (c.orthographic) return;
@@ -55,8 +55,8 @@ void describe_camera(const CameraReport& c, Metadata& m) {
     describe_iris(c, m);
     m.emplace_back("petzval:fstop", c.focal_length_mm * 1e-3f / (2 * c.lens_radius_m));
     m.emplace_back("petzval:fstopMeaning",
-                   c.traced ? kTracedFnumber : "focal length / diameter of the iris");
+                   c.traced ? camera::kTracedFnumber : "focal length / diameter of the iris");
     m.emplace_back("petzval:focus_m", c.focus_m);
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 #include "camera/setup/focus_plane.h"
 #include "io/picture/picture.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 struct CameraReport {
     std::string name;
@@ -25,15 +25,15 @@ struct CameraReport {
     std::optional<bool> natural_vignetting;  ///< where asked for, or photographic exposure decides
     CameraRequest asked;  ///< the user's request, and the file's where that is silent
 
-    [[nodiscard]] DispersionMode dispersion() const {
+    [[nodiscard]] camera::DispersionMode dispersion() const {
         return asked.dispersion_by(!dispersive_lens.empty());
     }
-    [[nodiscard]] FocusPlane focus_plane() const {
+    [[nodiscard]] camera::FocusPlane focus_plane() const {
         return {eye, (target - eye).normalized(), focus_m};
     }
 };
 
 /// Adds a report to a picture's metadata.
-void describe_camera(const CameraReport&, Metadata&);
+void describe_camera(const CameraReport&, io::Metadata&);
 
-}  // namespace petzval
+}  // namespace petzval::apps

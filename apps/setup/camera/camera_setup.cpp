@@ -13,7 +13,7 @@
 #include "io/base/error.h"
 #include "io/base/format.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 V3f position(const M44f& m) {
@@ -29,12 +29,12 @@ struct CameraContext {
     V2i size;
     const Scene& scene;
     const Bvh& bvh;
-    const Notice& notice;
+    const io::Notice& notice;
 
     [[nodiscard]] float aspect() const {
         return static_cast<float>(size.x) / static_cast<float>(size.y);
     }
-    [[nodiscard]] ArgumentError unfit(const std::string& why) const {
+    [[nodiscard]] io::ArgumentError unfit(const std::string& why) const {
         return {scene_file, "", why};
     }
 };
@@ -51,8 +51,8 @@ std::array<V3f, 2> framed(const CameraContext& at, const UnplacedView& view) {
     const auto aim = frame_scene(at.scene, view.yfov_rad, at.aspect(), view.stand_back_m,
                                  at.model.asked.orbit_deg.has_value());
     if (!aim) throw at.unfit("is too large or too far away to be framed; give ⟨look-at⟩");
-    at.notice(fmt::format("no camera in the file: ⟨look-at⟩ {},{}{}", with_commas((*aim)[0]),
-                          with_commas((*aim)[1]), view.fov_option));
+    at.notice(fmt::format("no camera in the file: ⟨look-at⟩ {},{}{}", io::with_commas((*aim)[0]),
+                          io::with_commas((*aim)[1]), view.fov_option));
     return *aim;
 }
 
@@ -77,7 +77,7 @@ M44f turned(const CameraContext& at, M44f to_world, const V3f& about, CameraRepo
 M44f stand(const CameraContext& at, const UnplacedView& view, CameraReport& report) {
     const CameraRequest& asked = at.model.asked;
     const V3f middle = at.scene.bounds.isEmpty() ? V3f(0.f) : at.scene.bounds.center();
-    const GltfCamera* const from = at.model.from;
+    const io::GltfCamera* const from = at.model.from;
     if (from) report.name = from->name;
     if (from && !asked.pose) {
         report.target = position(from->to_world) + forward(from->to_world);
@@ -89,23 +89,23 @@ M44f stand(const CameraContext& at, const UnplacedView& view, CameraReport& repo
     }
     const auto aim = asked.look_at ? *asked.look_at : framed(at, view);
     report.target = aim[1];
-    return turned(at, look_at(aim[0], aim[1]), asked.look_at ? aim[1] : middle, report);
+    return turned(at, camera::look_at(aim[0], aim[1]), asked.look_at ? aim[1] : middle, report);
 }
 
-using Finder = std::function<std::unique_ptr<Camera>(std::optional<float> focus_m)>;
+using Finder = std::function<std::unique_ptr<camera::Camera>(std::optional<float> focus_m)>;
 
 float depth_of(const CameraContext& at, const Focus& focus, const M44f& to_world,
-               const Camera& finder) {
+               const camera::Camera& finder) {
     const V3f eye = position(to_world), axis = forward(to_world);
     if (const auto* pixel = std::get_if<FocusPixel>(&focus)) {
         const V2f film = (V2f(pixel->x, pixel->y) + V2f(0.5f)) / V2f(at.size);
-        const auto depth = depth_under(at.scene, at.bvh, finder, eye, axis, film);
+        const auto depth = integrator::depth_under(at.scene, at.bvh, finder, eye, axis, film);
         if (!depth)
             throw at.unfit(
                 fmt::format("nothing to focus on under pixel {},{}", pixel->x, pixel->y));
         return *depth;
     }
-    const auto depth = depth_of_middle(at.scene, at.bvh, finder, eye, axis);
+    const auto depth = integrator::depth_of_middle(at.scene, at.bvh, finder, eye, axis);
     if (!depth)
         throw at.unfit("nothing in the middle of the picture to focus on; give ⟨focus⟩ in metres");
     return *depth;
@@ -136,15 +136,16 @@ float find_focus(const CameraContext& at, const M44f& to_world, const Finder& fi
 // Camera whose view changes while the shutter is open; nullptr where it does not. make: a camera
 // for a view of the file's camera, as at one of the steps.
 template <class Make>
-std::unique_ptr<Camera> zooming(const CameraContext& at, const GltfCamera* from, Make make) {
+std::unique_ptr<camera::Camera> zooming(const CameraContext& at, const io::GltfCamera* from,
+                                        Make make) {
     if (!from || from->zoom.empty() || !at.model.asked.shutter_curve) return nullptr;
-    std::vector<std::unique_ptr<Camera>> at_steps;
-    GltfCamera now = *from;
+    std::vector<std::unique_ptr<camera::Camera>> at_steps;
+    io::GltfCamera now = *from;
     for (const float view : from->zoom) {
         (now.orthographic ? now.ymag_m : now.yfov_rad) = view;
         at_steps.push_back(make(now));
     }
-    return std::make_unique<ZoomCamera>(std::move(at_steps));
+    return std::make_unique<camera::ZoomCamera>(std::move(at_steps));
 }
 
 // Tells that a lens does not zoom as the file's camera does.
@@ -155,16 +156,16 @@ void tell_of_held_zoom(const CameraContext& at) {
             "view stays as in the middle of the exposure");
 }
 
-CameraSetup orthographic(const CameraContext& at, const GltfCamera& from) {
+CameraSetup orthographic(const CameraContext& at, const io::GltfCamera& from) {
     CameraSetup setup;
     setup.report.asked = at.model.asked;
     setup.report.orthographic = true;
     setup.report.ymag_m = from.ymag_m;
     const M44f to_world = stand(at, {}, setup.report);
     // The picture's aspect wins over the file's; the height stays.
-    const auto camera = [&](const GltfCamera& view) {
-        return std::make_unique<OrthographicCamera>(to_world, view.ymag_m * at.aspect(),
-                                                    view.ymag_m);
+    const auto camera = [&](const io::GltfCamera& view) {
+        return std::make_unique<camera::OrthographicCamera>(to_world, view.ymag_m * at.aspect(),
+                                                            view.ymag_m);
     };
     setup.camera = zooming(at, &from, camera);
     setup.zooms = setup.camera != nullptr;
@@ -198,8 +199,9 @@ CameraSetup with_lens(const CameraContext& at, const LoadedLens& loaded) {
 }
 
 // Camera without a prescription with the angle of view of another moment.
-std::unique_ptr<Camera> thin_camera_at(const CameraContext& at, const GltfCamera& now,
-                                       ThinLens pose, std::optional<float> focus_m) {
+std::unique_ptr<camera::Camera> thin_camera_at(const CameraContext& at, const io::GltfCamera& now,
+                                               camera::ThinLens pose,
+                                               std::optional<float> focus_m) {
     CameraModel model = at.model;
     model.from = &now;
     const ThinView view = thin_view(model, at.scene_file, at.aspect());
@@ -219,15 +221,15 @@ CameraSetup without_prescription(const CameraContext& at) {
         view.angle_by_focal
             ? UnplacedView{view.yfov_rad, at.model.has_iris() ? 1e-3 * *view.focal_mm : 0, ""}
             : UnplacedView{view.yfov_rad, 0, fmt::format(" ⟨fov⟩ {}", view.yfov_deg)};
-    ThinLens pose;
+    camera::ThinLens pose;
     pose.aspect = at.aspect();
     pose.to_world = stand(at, unplaced, report);
     std::optional<float> focus_m = view.focus_m;
     if (at.model.has_iris() && !focus_m)
         focus_m = find_focus(at, pose.to_world, [&](std::optional<float> focused_m) {
-            ThinLens finder = pose;
+            camera::ThinLens finder = pose;
             finder.yfov_rad = yfov_at_rad(view, focused_m);
-            return std::make_unique<ThinLensCamera>(finder);
+            return std::make_unique<camera::ThinLensCamera>(finder);
         });
     pose.yfov_rad = yfov_at_rad(view, focus_m);
     if (pose.yfov_rad != view.yfov_rad) report.yfov_deg = pose.yfov_rad / kDegree_rad;
@@ -246,13 +248,13 @@ CameraSetup without_prescription(const CameraContext& at) {
     if (view.angle_of_file && std::holds_alternative<SingleLens>(at.model.optics))
         tell_of_held_zoom(at);
     else if (view.angle_of_file)
-        if (auto camera = zooming(at, at.model.from, [&](const GltfCamera& now) {
+        if (auto camera = zooming(at, at.model.from, [&](const io::GltfCamera& now) {
                 return thin_camera_at(at, now, pose, focus_m);
             })) {
             setup.camera = std::move(camera);
             setup.zooms = true;
         }
-    setup.finder = std::make_unique<ThinLensCamera>(pose);
+    setup.finder = std::make_unique<camera::ThinLensCamera>(pose);
     return setup;
 }
 
@@ -264,9 +266,9 @@ CameraSetup still_camera(const CameraContext& at) {
 }
 
 // The shutter, where something moves while it is open.
-std::shared_ptr<const Shutter> shutter_of(const CameraModel& model, const Scene& scene,
-                                          bool zooms) {
-    const GltfCamera* const carrier = model.asked.pose ? nullptr : model.from;
+std::shared_ptr<const camera::Shutter> shutter_of(const CameraModel& model, const Scene& scene,
+                                                  bool zooms) {
+    const io::GltfCamera* const carrier = model.asked.pose ? nullptr : model.from;
     const bool moves = zooms || (carrier && !carrier->steps.empty());
     if (!model.asked.shutter_curve || !(moves || has_motion(scene))) return nullptr;
     return shutter_with(*model.asked.shutter_curve, carrier, carrier ? carrier->to_world : M44f());
@@ -274,20 +276,21 @@ std::shared_ptr<const Shutter> shutter_of(const CameraModel& model, const Scene&
 
 }  // namespace
 
-std::shared_ptr<const Shutter> shutter_with(const ShutterCurve& curve, const GltfCamera* camera,
-                                            const M44f& in_the_middle) {
+std::shared_ptr<const camera::Shutter> shutter_with(const camera::ShutterCurve& curve,
+                                                    const io::GltfCamera* camera,
+                                                    const M44f& in_the_middle) {
     std::vector<M44f> steps;
     if (camera) steps = camera->steps;
     if (camera && steps.empty()) steps = {camera->to_world, camera->to_world};
-    return std::make_shared<const Shutter>(curve, steps, in_the_middle);
+    return std::make_shared<const camera::Shutter>(curve, steps, in_the_middle);
 }
 
 CameraSetup set_up_camera(const CameraModel& model, const std::string& scene_file, V2i size,
-                          const Scene& scene, const Bvh& bvh, const Notice& notice) {
+                          const Scene& scene, const Bvh& bvh, const io::Notice& notice) {
     const CameraContext at{model, scene_file, size, scene, bvh, notice};
     CameraSetup setup = still_camera(at);
     setup.shutter = shutter_of(model, scene, setup.zooms);
     return setup;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,26 +9,27 @@
 #include "core/traversal/bvh.h"
 #include "io/base/notice.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 struct CameraSetup {
-    std::unique_ptr<Camera> camera;  ///< in the middle of the exposure
-    std::unique_ptr<Camera> finder;  ///< pictures the same with a narrow iris
-    bool zooms = false;              ///< the camera's view changes while the shutter is open
-    std::shared_ptr<const Shutter> shutter{};  ///< nullptr: nothing moves
+    std::unique_ptr<camera::Camera> camera;  ///< in the middle of the exposure
+    std::unique_ptr<camera::Camera> finder;  ///< pictures the same with a narrow iris
+    bool zooms = false;  ///< the camera's view changes while the shutter is open
+    std::shared_ptr<const camera::Shutter> shutter{};  ///< nullptr: nothing moves
     CameraReport report;
 };
 
 /// A shutter for a camera of a file, or for one that stands still (nullptr), whose rays start from
 /// in_the_middle: where the camera is in the middle of an exposure, maybe of another frame.
-[[nodiscard]] std::shared_ptr<const Shutter> shutter_with(const ShutterCurve&, const GltfCamera*,
-                                                          const M44f& in_the_middle);
+[[nodiscard]] std::shared_ptr<const camera::Shutter> shutter_with(const camera::ShutterCurve&,
+                                                                  const io::GltfCamera*,
+                                                                  const M44f& in_the_middle);
 
 /// Camera of a model in a scene, which must be finished and in bvh; scene_file is its name, for
 /// errors. Whatever `notice` is told in the form of options gives the same camera when it is passed
 /// back. Throws ArgumentError for a lens that cannot do what is asked, and where there is nothing
 /// to focus on.
 [[nodiscard]] CameraSetup set_up_camera(const CameraModel&, const std::string& scene_file, V2i size,
-                                        const Scene&, const Bvh&, const Notice& notice);
+                                        const Scene&, const Bvh&, const io::Notice& notice);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Embree takes coordinates up to about 1e18; the square of a distance must be a float as well.
@@ -178,4 +178,4 @@ std::optional<std::array<V3f, 2>> frame_scene(const Scene& scene, float yfov_rad
     return placed;
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

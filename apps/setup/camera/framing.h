@@ -7,7 +7,7 @@
 
 #include "core/scene/scene.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// Eye and target of a camera that sees the whole scene, as near as can be but for a narrow margin,
 /// from the front, a little from above and the right. What is flat is seen from where it is broad.
@@ -19,4 +19,4 @@ namespace petzval {
                                                             float aspect, double stand_back_m,
                                                             bool all_around = false);
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -18,23 +18,24 @@
 #include "io/aperture/aperture_file.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
-FocusedLens focused_at(const LoadedLens& loaded, float focus_m, FocusBy by, double stop_radius_mm) {
-    auto sharp = focused_from_pupil(loaded.lens, 1e3 * double(focus_m), by, stop_radius_mm);
+camera::FocusedLens focused_at(const LoadedLens& loaded, float focus_m, camera::FocusBy by,
+                               double stop_radius_mm) {
+    auto sharp = camera::focused_from_pupil(loaded.lens, 1e3 * double(focus_m), by, stop_radius_mm);
     if (!sharp)
-        throw ArgumentError(loaded.name(), "",
-                            "cannot focus at {:g} m; give ⟨focus⟩ a greater distance", focus_m);
+        throw io::ArgumentError(loaded.name(), "",
+                                "cannot focus at {:g} m; give ⟨focus⟩ a greater distance", focus_m);
     return *std::move(sharp);
 }
 
 // Input of a lens camera: lens, iris, pose and film.
-LensCameraInput input_of(const LoadedLens& loaded, const M44f& to_world, FocusedLens sharp,
-                         Iris iris) {
-    LensCameraInput in{.lens = std::make_shared<const Lens>(std::move(sharp.lens)),
-                       .iris = std::move(iris),
-                       .to_world = to_world};
+camera::LensCameraInput input_of(const LoadedLens& loaded, const M44f& to_world,
+                                 camera::FocusedLens sharp, camera::Iris iris) {
+    camera::LensCameraInput in{.lens = std::make_shared<const camera::Lens>(std::move(sharp.lens)),
+                               .iris = std::move(iris),
+                               .to_world = to_world};
     in.film_mm = in.lens->film_mm();
     in.film_width_mm = loaded.film_mm.x;
     in.film_height_mm = loaded.film_mm.y;
@@ -43,32 +44,34 @@ LensCameraInput input_of(const LoadedLens& loaded, const M44f& to_world, Focused
 }
 
 // Stop radius for --fstop, as far as the lens opens.
-double stop_radius_of(const LoadedLens& loaded, std::optional<float> fstop, const Notice& notice) {
+double stop_radius_of(const LoadedLens& loaded, std::optional<float> fstop,
+                      const io::Notice& notice) {
     const double filed_mm = loaded.stop_radius_mm();
     if (!fstop) return filed_mm;
-    const auto wanted_mm = stop_radius_for(loaded.lens, *fstop);
+    const auto wanted_mm = camera::stop_radius_for(loaded.lens, *fstop);
     if (wanted_mm && *wanted_mm <= filed_mm * (1 + 1e-6)) return *wanted_mm;
     notice(fmt::format("warning: {} opens to f/{:.3g} at most, not to f/{:g}: an f-number is {}",
-                       loaded.name(), fnumber_of(loaded.lens, filed_mm), *fstop, kTracedFnumber));
+                       loaded.name(), camera::fnumber_of(loaded.lens, filed_mm), *fstop,
+                       camera::kTracedFnumber));
     return filed_mm;
 }
 
 // Refuses a lens that passes next to nothing of what its pupil promises, or no ray from afar: then
 // its f-number is infinite.
-void require_light(const std::string& name, const Lens& lens, double axial, double promised,
+void require_light(const std::string& name, const camera::Lens& lens, double axial, double promised,
                    double fnumber) {
     constexpr double kLeastShare = 0.01;
-    const auto blockage = find_blockage(lens);
+    const auto blockage = camera::find_blockage(lens);
     const bool is_dim = blockage && axial < kLeastShare * promised;
     if (axial > 0 && !is_dim && std::isfinite(fnumber)) return;
-    throw ArgumentError(name, "",
-                        "lets no light through to the middle of the film" +
-                            (blockage ? ": " + blockage->text() : std::string()));
+    throw io::ArgumentError(name, "",
+                            "lets no light through to the middle of the film" +
+                                (blockage ? ": " + blockage->text() : std::string()));
 }
 
 // Tells where a lens lights next to nothing of the film: its picture would be black without a word.
-void tell_dark_film(const std::string& name, const LensCamera& camera, V2f film_mm,
-                    const Notice& notice) {
+void tell_dark_film(const std::string& name, const camera::LensCamera& camera, V2f film_mm,
+                    const io::Notice& notice) {
     constexpr int kAcross = 8;
     constexpr double kLeastLit = 0.1;
     int lit = 0;
@@ -98,20 +101,22 @@ bool LoadedLens::disperses() const {
     });
 }
 
-LoadedLens load_lens_for_film(const std::string& name_or_file, std::span<const AgfCatalog> catalogs,
+LoadedLens load_lens_for_film(const std::string& name_or_file,
+                              std::span<const io::AgfCatalog> catalogs,
                               std::optional<V2f> sensor_mm, float aspect,
                               std::optional<float> fit_yfov_rad) {
-    LensFile file = load_lens(name_or_file, catalogs);
-    LoadedLens loaded{Lens(std::move(file.lens)), std::move(file.warnings), 0, {}, 0};
-    loaded.film_mm = film_within(
-        sensor_mm.value_or(usual_sensor_mm(loaded.lens.prescription().image_circle_mm)), aspect);
+    io::LensFile file = io::load_lens(name_or_file, catalogs);
+    LoadedLens loaded{camera::Lens(std::move(file.lens)), std::move(file.warnings), 0, {}, 0};
+    loaded.film_mm = camera::film_within(
+        sensor_mm.value_or(camera::usual_sensor_mm(loaded.lens.prescription().image_circle_mm)),
+        aspect);
     if (fit_yfov_rad) {
-        auto fitted = scaled_to_view(loaded.lens, loaded.film_mm.y, *fit_yfov_rad);
+        auto fitted = camera::scaled_to_view(loaded.lens, loaded.film_mm.y, *fit_yfov_rad);
         if (!fitted)
-            throw ArgumentError("⟨fit⟩", "",
-                                "{} does not see {:.4g} degrees: take a smaller ⟨fov⟩ "
-                                "or another lens",
-                                loaded.name(), double(*fit_yfov_rad) * 180 / kPi);
+            throw io::ArgumentError("⟨fit⟩", "",
+                                    "{} does not see {:.4g} degrees: take a smaller ⟨fov⟩ "
+                                    "or another lens",
+                                    loaded.name(), double(*fit_yfov_rad) * 180 / kPi);
         loaded.lens = *std::move(fitted);
     }
     const double circle_mm = loaded.lens.prescription().image_circle_mm;
@@ -121,66 +126,70 @@ LoadedLens load_lens_for_film(const std::string& name_or_file, std::span<const A
             fmt::format("{} covers a circle of {:.3g} mm{}; the film's corners are {:.3g} mm apart",
                         loaded.name(), circle_mm,
                         fit_yfov_rad ? " once it is scaled to the angle of view" : "", corners_mm));
-    const FirstOrder f = first_order(loaded.lens, kLineD_nm);
+    const camera::FirstOrder f = camera::first_order(loaded.lens, kLineD_nm);
     if (!(f.focal_length_mm > 0) || !std::isfinite(f.focal_length_mm))
-        throw InputError(name_or_file, "", "has no positive focal length: it forms no image");
+        throw io::InputError(name_or_file, "", "has no positive focal length: it forms no image");
     loaded.focal_length_mm = f.focal_length_mm;
-    loaded.yfov_rad = angle_of_view_rad(loaded.lens, loaded.film_mm.y, loaded.focal_length_mm);
+    loaded.yfov_rad =
+        camera::angle_of_view_rad(loaded.lens, loaded.film_mm.y, loaded.focal_length_mm);
     return loaded;
 }
 
 LensSetup set_up_lens(const CameraRequest& asked, const LoadedLens& loaded, const M44f& to_world,
-                      float focus_m, const Notice& notice) {
+                      float focus_m, const io::Notice& notice) {
     for (const std::string& warning : loaded.warnings) notice("warning: " + warning);
     LensSetup setup;
-    if (asked.coating == Coating::Year && loaded.lens.prescription().year == 0)
-        throw ArgumentError(loaded.name(), "",
-                            "its file states no year, by which ⟨coating⟩=year goes: give "
-                            "⟨coating⟩=filed or another");
+    if (asked.coating == camera::Coating::Year && loaded.lens.prescription().year == 0)
+        throw io::ArgumentError(loaded.name(), "",
+                                "its file states no year, by which ⟨coating⟩=year goes: give "
+                                "⟨coating⟩=filed or another");
     setup.stop_radius_mm = stop_radius_of(loaded, asked.fstop, notice);
-    setup.fnumber = fnumber_of(loaded.lens, setup.stop_radius_mm);
-    FocusedLens sharp = focused_at(loaded, focus_m, asked.focus_by, setup.stop_radius_mm);
+    setup.fnumber = camera::fnumber_of(loaded.lens, setup.stop_radius_mm);
+    camera::FocusedLens sharp = focused_at(loaded, focus_m, asked.focus_by, setup.stop_radius_mm);
     const std::string aperture = asked.aperture.value_or("circle");
-    std::unique_ptr<LensCamera> camera;
-    std::shared_ptr<const Lens> lens;
+    std::unique_ptr<camera::LensCamera> camera;
+    std::shared_ptr<const camera::Lens> lens;
     double promised = 0;
     try {
-        const Iris iris(parse_aperture(aperture, {}, asked.iris_pictures.value_or(PictureBudget())),
-                        setup.stop_radius_mm, asked.aperture_scale, asked.iris_sampling,
-                        loaded.stop_radius_mm());
+        const camera::Iris iris(
+            io::parse_aperture(aperture, {}, asked.iris_pictures.value_or(io::PictureBudget())),
+            setup.stop_radius_mm, asked.aperture_scale, asked.iris_sampling,
+            loaded.stop_radius_mm());
         if (iris.share_cut() > 5e-4)
             notice(
                 fmt::format("aperture {}: {:.1f} % of it lies beyond the stop's rim and is cut off",
                             aperture, 100 * iris.share_cut()));
-        LensCameraInput in = input_of(loaded, to_world, std::move(sharp), iris);
+        camera::LensCameraInput in = input_of(loaded, to_world, std::move(sharp), iris);
         setup.film_mm = in.film_mm;
         lens = in.lens;
-        promised = paraxial_irradiance(*lens, iris.area_mm2());
+        promised = camera::paraxial_irradiance(*lens, iris.area_mm2());
         in.dispersion = asked.dispersion_by(loaded.disperses());
         in.coating = asked.coating;
         in.precision = asked.precision;
-        camera = std::make_unique<LensCamera>(std::move(in));
+        camera = std::make_unique<camera::LensCamera>(std::move(in));
     } catch (const std::invalid_argument& error) {
-        throw ArgumentError(aperture, "", error.what());
+        throw io::ArgumentError(aperture, "", error.what());
     }
     const double axial = camera->irradiance(V2f(0.f), 1024);
     require_light(loaded.name(), *lens, axial, promised, setup.fnumber);
     tell_dark_film(loaded.name(), *camera, loaded.film_mm, notice);
     const bool normalised = asked.exposure == ExposureMode::Normalised;
     camera->set_exposure(
-        normalised ? 1 : photographic_gain(axial, double(asked.iso), double(asked.shutter_s)),
+        normalised ? 1
+                   : camera::photographic_gain(axial, double(asked.iso), double(asked.shutter_s)),
         axial);
     setup.camera = std::move(camera);
     return setup;
 }
 
-std::unique_ptr<Camera> viewfinder(const LoadedLens& loaded, const M44f& to_world,
-                                   std::optional<float> focus_m) {
+std::unique_ptr<camera::Camera> viewfinder(const LoadedLens& loaded, const M44f& to_world,
+                                           std::optional<float> focus_m) {
     constexpr double kStoppedDown = 100;
-    FocusedLens sharp =
-        focused_at(loaded, focus_m.value_or(kFarthestFocus_m), FocusBy::Paraxial, 0);
-    return std::make_unique<LensCamera>(input_of(
-        loaded, to_world, std::move(sharp), Iris(Disk{}, loaded.stop_radius_mm() / kStoppedDown)));
+    camera::FocusedLens sharp =
+        focused_at(loaded, focus_m.value_or(kFarthestFocus_m), camera::FocusBy::Paraxial, 0);
+    return std::make_unique<camera::LensCamera>(
+        input_of(loaded, to_world, std::move(sharp),
+                 camera::Iris(camera::Disk{}, loaded.stop_radius_mm() / kStoppedDown)));
 }
 
-}  // namespace petzval
+}  // namespace petzval::apps

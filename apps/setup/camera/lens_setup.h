@@ -12,11 +12,11 @@
 #include "io/base/notice.h"
 #include "io/lens/lens_file.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// A lens that is not yet focused.
 struct LoadedLens {
-    Lens lens;  ///< as filed
+    camera::Lens lens;  ///< as filed
     std::vector<std::string> warnings;
     double focal_length_mm;
     V2f film_mm;     ///< width and height, of the picture's aspect
@@ -32,23 +32,23 @@ struct LoadedLens {
 /// it. fit_yfov_rad: the lens is scaled until a distant scene of that height fills the film. Throws
 /// InputError, and ArgumentError for a lens that does not see so far to the side.
 [[nodiscard]] LoadedLens load_lens_for_film(const std::string& name_or_file,
-                                            std::span<const AgfCatalog> catalogs,
+                                            std::span<const io::AgfCatalog> catalogs,
                                             std::optional<V2f> sensor_mm, float aspect,
                                             std::optional<float> fit_yfov_rad);
 
 struct LensSetup {
-    std::unique_ptr<Camera> camera;
+    std::unique_ptr<camera::Camera> camera;
     double film_mm, stop_radius_mm, fnumber;  ///< fnumber: of the axial ray at the rim
 };
 
 /// Camera with the lens in focus. focus_m: along the axis from the middle of the entrance pupil.
 /// Throws InputError or ArgumentError: a focus nearer than the lens can, an iris that is none.
 [[nodiscard]] LensSetup set_up_lens(const CameraRequest&, const LoadedLens&, const M44f& to_world,
-                                    float focus_m, const Notice& notice);
+                                    float focus_m, const io::Notice& notice);
 
 /// Camera with the lens stopped down so far that nothing is blurred, to choose a focus by. focus_m:
 /// absent for far away; it decides the scale of the picture.
-[[nodiscard]] std::unique_ptr<Camera> viewfinder(const LoadedLens&, const M44f& to_world,
-                                                 std::optional<float> focus_m);
+[[nodiscard]] std::unique_ptr<camera::Camera> viewfinder(const LoadedLens&, const M44f& to_world,
+                                                         std::optional<float> focus_m);
 
-}  // namespace petzval
+}  // namespace petzval::apps

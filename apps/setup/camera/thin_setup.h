@@ -10,7 +10,7 @@
 #include "camera/models/thin_lens.h"
 #include "io/base/notice.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 /// View of a camera as far as the request decides it, before anything of the scene is known.
 struct ThinView {
@@ -31,7 +31,7 @@ struct ThinView {
 [[nodiscard]] float yfov_at_rad(const ThinView&, std::optional<float> focus_m);
 
 struct ThinSetup {
-    std::unique_ptr<Camera> camera;
+    std::unique_ptr<camera::Camera> camera;
     double focal_mm, lens_radius_m = 0;  ///< radius 0: a pinhole
     double film_mm = 0;                  ///< where the film stands behind a lens in focus
     bool natural_vignetting = false;
@@ -39,7 +39,7 @@ struct ThinSetup {
 
 /// Camera of a model. pose: with the view's angle and aspect. focus_m: absent for a pinhole. Throws
 /// ArgumentError for an object within the focal length, and for an iris that is none.
-[[nodiscard]] ThinSetup set_up_thin(const CameraModel&, const ThinView&, ThinLens pose,
-                                    std::optional<float> focus_m, const Notice& notice);
+[[nodiscard]] ThinSetup set_up_thin(const CameraModel&, const ThinView&, camera::ThinLens pose,
+                                    std::optional<float> focus_m, const io::Notice& notice);
 
-}  // namespace petzval
+}  // namespace petzval::apps

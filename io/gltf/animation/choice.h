@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Which animations of a file are played.
 struct AnimationChoice {
@@ -16,4 +16,4 @@ struct AnimationChoice {
     [[nodiscard]] bool operator==(const AnimationChoice&) const = default;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

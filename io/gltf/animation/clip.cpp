@@ -11,7 +11,7 @@
 #include "io/base/json_parse.h"
 #include "io/base/named.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -100,4 +100,4 @@ std::vector<size_t> played_animations(const json& root, const AnimationChoice& c
     return played;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "io/gltf/animation/choice.h"
 #include "io/gltf/animation/keyframes.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// A property that changes.
 struct AnimatedProperty {
@@ -42,4 +42,4 @@ struct GltfClip {
 /// Pointer to what a channel changes; empty where that is not told.
 [[nodiscard]] std::string target_of(const nlohmann::json& channel);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Values = std::span<const double>;
@@ -74,4 +74,4 @@ std::vector<double> Keyframes::at(double time_s) const {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// How values run between keys: glTF 2.0, appendix C.
 enum class Interpolation : uint8_t { Step, Linear, CubicSpline };
@@ -26,4 +26,4 @@ struct Keyframes {
     [[nodiscard]] std::vector<double> at(double time_s) const;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "io/gltf/animation/node_place.h"
 #include "io/gltf/animation/pose.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -199,7 +199,7 @@ class NodeMotion::Player {
     /// Whether keys of a track lie closer together than time steps.
     [[nodiscard]] bool has_keys_between_steps(const Track& track) const {
         const double step_s = choice_.open_s / double(steps_ - 1);
-        return track.keys && petzval::has_keys_between_steps(track, choice_, step_s);
+        return track.keys && io::has_keys_between_steps(track, choice_, step_s);
     }
     /// The greatest angle that a track turns by from one step to the next.
     [[nodiscard]] double turn_rad(const Track& track) const {
@@ -339,4 +339,4 @@ std::set<std::string> held_while_open(std::span<const GltfClip> clips,
     return held;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -12,7 +12,7 @@
 #include "core/math/math.h"
 #include "io/gltf/animation/clip.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// The nodes of a file as a tree, as they stand in the middle of the exposure.
 struct NodeTree {
@@ -60,4 +60,4 @@ class NodeMotion {
 [[nodiscard]] std::set<std::string> held_while_open(std::span<const GltfClip>,
                                                     const AnimationChoice&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -4,7 +4,7 @@
 #include "io/base/json_parse.h"
 #include "io/gltf/meshes/matrix.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 template <class To>
@@ -40,4 +40,4 @@ M44d stored_matrix(const nlohmann::json& node) {
     return matrix;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

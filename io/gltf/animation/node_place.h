@@ -7,7 +7,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Place of a node in three parts.
 struct NodePlace {
@@ -24,4 +24,4 @@ struct NodePlace {
 /// The node's matrix, else that of its parts.
 [[nodiscard]] M44d stored_matrix(const nlohmann::json& node);
 
-}  // namespace petzval
+}  // namespace petzval::io

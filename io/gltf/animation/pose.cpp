@@ -5,7 +5,7 @@
 
 #include "io/gltf/schema/schema.h"
 
-namespace petzval {
+namespace petzval::io {
 using nlohmann::json;
 
 std::vector<std::string_view> words_of(const std::string& pointer) {
@@ -36,4 +36,4 @@ void pose(json& root, std::span<const GltfClip> clips, double time_s, double fra
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

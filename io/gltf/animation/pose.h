@@ -10,7 +10,7 @@
 
 #include "io/gltf/animation/clip.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Words of a pointer: "nodes", "3" and "scale" of /nodes/3/scale. They live as long as it does.
 [[nodiscard]] std::vector<std::string_view> words_of(const std::string& pointer);
@@ -20,4 +20,4 @@ namespace petzval {
 void pose(nlohmann::json& root, std::span<const GltfClip>, double time_s, double frame_s,
           bool repeats);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Share of a body's extent that points may be off between time steps.
@@ -82,4 +82,4 @@ Thinning thin(std::span<const std::vector<double>> weights, std::span<const doub
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

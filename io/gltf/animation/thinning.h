@@ -8,7 +8,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Choice of every n-th of the time steps.
 struct Thinning {
@@ -32,4 +32,4 @@ struct Thinning {
 [[nodiscard]] Thinning thin(std::span<const std::vector<double>> weights,
                             std::span<const double> sizes_m, double size_m);
 
-}  // namespace petzval
+}  // namespace petzval::io

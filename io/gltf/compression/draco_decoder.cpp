@@ -14,7 +14,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// A way of Draco's to predict values. The library believes the number of orientations of texture
@@ -218,4 +218,4 @@ const char* decode_draco_stream(std::span<const uint8_t> stream, const DracoHead
                : decode<draco::MeshSequentialDecoder>(stream, most_vertices, mesh);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

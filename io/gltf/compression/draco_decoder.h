@@ -9,7 +9,7 @@ namespace draco {
 class Mesh;
 }
 
-namespace petzval {
+namespace petzval::io {
 
 /// Decodes a stream without metadata, whose header is without fault, into a mesh. Returns the
 /// fault; nullptr where there is none. most_vertices: more are refused before their attributes are
@@ -17,4 +17,4 @@ namespace petzval {
 [[nodiscard]] const char* decode_draco_stream(std::span<const uint8_t> stream, const DracoHeader&,
                                               uint64_t most_vertices, draco::Mesh&);
 
-}  // namespace petzval
+}  // namespace petzval::io

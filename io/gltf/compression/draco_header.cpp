@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Reads bytes from the front; one that is not there makes it fail for good.
@@ -126,4 +126,4 @@ DracoHeader read_draco_header(std::span<const uint8_t> stream) {
     return header;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 enum class DracoConnectivity : uint8_t { Sequential, Edgebreaker };
 
@@ -31,4 +31,4 @@ constexpr size_t kDracoHeaderBytes = 11;
     return (uint64_t(256) << 20) + 256 * stream_bytes;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 
 #include "io/gltf/compression/draco_decoder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// The stream without its metadata.
@@ -88,4 +88,4 @@ DracoMesh decode_draco(std::span<const uint8_t> stream, const DracoHeader& heade
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

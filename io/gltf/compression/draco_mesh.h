@@ -6,7 +6,7 @@
 
 #include "io/gltf/compression/draco_header.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// An attribute of a stream, and what its values are to become.
 struct DracoArray {
@@ -27,4 +27,4 @@ struct DracoMesh {
 [[nodiscard]] DracoMesh decode_draco(std::span<const uint8_t> stream, const DracoHeader&,
                                      uint64_t most_vertices, std::span<const DracoArray>);
 
-}  // namespace petzval
+}  // namespace petzval::io

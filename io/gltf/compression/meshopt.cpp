@@ -8,7 +8,7 @@
 #include "io/gltf/compression/meshopt_attributes.h"
 #include "io/gltf/compression/meshopt_filters.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 // Of the extension's appendix A.
@@ -111,4 +111,4 @@ std::optional<std::vector<uint8_t>> decode_meshopt(const MeshoptLayout& layout,
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

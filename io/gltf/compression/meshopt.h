@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 enum class MeshoptMode : uint8_t { Attributes, Triangles, Indices };
 enum class MeshoptFilter : uint8_t { None, Octahedral, Quaternion, Exponential, Color };
@@ -32,4 +32,4 @@ struct MeshoptLayout {
 [[nodiscard]] std::optional<std::vector<uint8_t>> decode_meshopt(const MeshoptLayout&,
                                                                  std::span<const uint8_t> stream);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstring>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 // The numbers are those of the extension's appendix A. Four neighbouring bytes of an element are a
@@ -159,4 +159,4 @@ bool decode_attributes_1(std::span<const uint8_t> stream, uint64_t stride, std::
     return in.at_end();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Elements of a group, which share a header (appendix A).
 inline constexpr uint64_t kMeshoptGroup = 16;
@@ -23,4 +23,4 @@ inline constexpr uint64_t kMeshoptGroup = 16;
 [[nodiscard]] bool decode_attributes_1(std::span<const uint8_t> stream, uint64_t stride,
                                        std::span<uint8_t> out);
 
-}  // namespace petzval
+}  // namespace petzval::io

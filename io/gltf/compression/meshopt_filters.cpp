@@ -9,7 +9,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Replaces each N values of type T by f(values).
@@ -103,4 +103,4 @@ void filter_color_16(std::span<uint8_t> elements) {
     color<uint16_t>(elements);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

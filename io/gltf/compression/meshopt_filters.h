@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Decodes unit vectors of four signed bytes each: octahedral coordinates (Cigolle et al. 2014), 1
 /// in their scale, and a byte that stays.
@@ -29,4 +29,4 @@ void filter_color_8(std::span<uint8_t> elements);
 /// Decodes colours of four 16-bit integers each, likewise.
 void filter_color_16(std::span<uint8_t> elements);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "io/base/ascii.h"
 #include "io/base/json_parse.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -148,4 +148,4 @@ std::string lamp_unit_doubt(const json& root) {
            "(Data > Lighting)";
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

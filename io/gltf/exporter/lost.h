@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Losses by the exporter, a line each: what probably was in the scene and is not in its file, the
 /// sign of it, and what to do. None where the file is not Blender's. root: checked JSON; shown:
@@ -20,4 +20,4 @@ namespace petzval {
 /// not Blender's or has no lamps.
 [[nodiscard]] std::string lamp_unit_doubt(const nlohmann::json& root);
 
-}  // namespace petzval
+}  // namespace petzval::io

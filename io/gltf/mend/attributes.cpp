@@ -5,7 +5,7 @@
 #include <array>
 #include <string_view>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Formats that an attribute may have; words are separated by blanks.
@@ -73,4 +73,4 @@ bool is_allowed_format(const GltfSemantic& semantic, const GltfFormat& format, b
            (lists(row.components, component) || (quantized && lists(row.quantized, component)));
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 
 #include "io/gltf/mend/semantic.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Format of an accessor's elements.
 struct GltfFormat {
@@ -23,4 +23,4 @@ struct GltfFormat {
 [[nodiscard]] bool is_allowed_format(const GltfSemantic&, const GltfFormat&, bool quantized,
                                      bool is_target);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 
 #include "io/base/json_parse.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -101,4 +101,4 @@ void JsonEditor::clamp(json& number, const std::string& key, Range range) const 
     number = bound;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -11,7 +11,7 @@
 #include "io/base/json_cursor.h"
 #include "io/base/warning_log.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Editor of one object. What is not of the type asked for is left alone: the checks refuse it.
 class JsonEditor {
@@ -69,4 +69,4 @@ class JsonEditor {
     bool is_extension_ = false;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

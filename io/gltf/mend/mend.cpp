@@ -8,7 +8,7 @@
 
 #include "io/base/json_parse.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -123,4 +123,4 @@ void mend_gltf(json& document, WarningLog& warnings) {
     mend_nodes(root);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

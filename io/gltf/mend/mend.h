@@ -7,7 +7,7 @@
 
 #include "io/gltf/mend/json_editor.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Mends the whole document, part by part as below.
 void mend_gltf(nlohmann::json& root, WarningLog&);
@@ -27,4 +27,4 @@ void mend_nodes(const JsonEditor& root);
 void mend_accessors(const JsonEditor& root);
 void mend_meshes(const JsonEditor& root);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,7 +5,7 @@
 #include "io/gltf/mend/mend.h"
 #include "io/gltf/mend/mend_property.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -116,4 +116,4 @@ void mend_lights(const JsonEditor& root) {
     lights->each("lights", mend_light);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 #include "io/base/json_parse.h"
 #include "io/gltf/mend/mend.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -110,4 +110,4 @@ void mend_header(const JsonEditor& root) {
     for (const std::string& name : collector.found()) declare(root, *used, name, "an object has");
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "io/gltf/mend/mend.h"
 #include "io/gltf/mend/mend_property.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -71,4 +71,4 @@ void mend_materials(const JsonEditor& root) {
     root.each("materials", mend_material);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include "io/gltf/mend/attributes.h"
 #include "io/gltf/mend/mend.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -234,4 +234,4 @@ void mend_meshes(const JsonEditor& root) {
     mend_node_weights(root);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

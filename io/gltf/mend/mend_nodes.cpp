@@ -10,7 +10,7 @@
 #include "io/gltf/mend/mend.h"
 #include "io/gltf/schema/schema.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -157,4 +157,4 @@ void mend_nodes(const JsonEditor& root) {
     });
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include "io/base/ascii.h"
 #include "io/base/json_parse.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -81,4 +81,4 @@ void mend_property(const JsonEditor& owner, const GltfProperty& property) {
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

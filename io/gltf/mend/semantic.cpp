@@ -6,7 +6,7 @@
 #include <charconv>
 #include <string_view>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr std::array<std::string_view, 3> single = {"POSITION", "NORMAL", "TANGENT"};
@@ -37,4 +37,4 @@ std::optional<GltfSemantic> parse_gltf_semantic(const std::string& name) {
     return semantic.set ? std::optional(semantic) : std::nullopt;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Parts of an attribute's name, "TEXCOORD_1" say. A name of an application's own begins with '_'.
 struct GltfSemantic {
@@ -18,4 +18,4 @@ struct GltfSemantic {
 /// Parts of a name; nothing where it is no attribute of glTF.
 [[nodiscard]] std::optional<GltfSemantic> parse_gltf_semantic(const std::string& name);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,7 +5,7 @@
 
 #include "io/gltf/meshes/matrix.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 V3d transform_direction(const M44d& m, const V3d& v) {
@@ -58,4 +58,4 @@ void bake(Mesh& mesh, const M44d& to_world) {
     if (transform.mirrors()) turn_over(mesh);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -4,7 +4,7 @@
 
 #include "core/scene/mesh.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Transform of a mesh's vertices: positions and tangents by the matrix, normals by the inverse
 /// transpose; a matrix that mirrors turns the sign of a tangent's w. All in double.
@@ -27,4 +27,4 @@ void turn_over(Mesh&);
 /// Moves a whole mesh, and turns over one that is mirrored.
 void bake(Mesh&, const M44d& to_world);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 
 #include "io/gltf/meshes/matrix.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Thickness of a sheet: a share of its size, which does not show and leaves a camera some
@@ -63,4 +63,4 @@ M44d thickened(const M44d& flat, const Box3f& of_mesh) {
     return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -4,7 +4,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Dimensions that a matrix leaves: 3, 2 where it flattens space onto a plane, 1 for a line or a
 /// point, or where it is not finite.
@@ -16,4 +16,4 @@ namespace petzval {
 /// It does not mirror, as glTF 2.0, section 3.7.4 counts only a negative determinant as mirroring.
 [[nodiscard]] M44d thickened(const M44d& flat, const Box3f& of_mesh);
 
-}  // namespace petzval
+}  // namespace petzval::io

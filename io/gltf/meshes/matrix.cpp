@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::io {
 
 double relative_determinant(const M44d& m) {
     const V3d x = row(m, 0), y = row(m, 1), z = row(m, 2);
@@ -43,4 +43,4 @@ M44d rotation_matrix(const std::array<double, 4>& q) {
             1};
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Determinant of the upper 3x3 part over the product of its rows' lengths: -1 to 1, 0 where the
 /// matrix flattens space.
@@ -28,4 +28,4 @@ namespace petzval {
 /// of the axes.
 [[nodiscard]] M44d rotation_matrix(const std::array<double, 4>&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 template <class Value>
@@ -50,4 +50,4 @@ bool add_missing_uv(Mesh& mesh, const Material& material) {
     return added;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

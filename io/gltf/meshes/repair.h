@@ -5,7 +5,7 @@
 #include "core/scene/material.h"
 #include "core/scene/mesh.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// How much was not finite.
 struct BrokenValues {
@@ -20,4 +20,4 @@ BrokenValues repair_values(Mesh&);
 /// none, as OpenGL reads an attribute that is not there; says whether there were such.
 bool add_missing_uv(Mesh&, const Material&);
 
-}  // namespace petzval
+}  // namespace petzval::io

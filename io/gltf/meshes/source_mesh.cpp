@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 template <class Value>
@@ -56,4 +56,4 @@ void SourceMesh::take_shape(Mesh&& of_file) {
     gather_values(mesh.tangents, file_vertex_);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

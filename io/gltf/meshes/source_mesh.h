@@ -4,7 +4,7 @@
 
 #include "core/scene/mesh.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// A primitive's mesh, and where in the file each of its vertices stands. Whatever splits vertices
 /// does so by gather(). What the file says of a vertex beside the mesh (joints, weights, morph
@@ -34,4 +34,4 @@ class SourceMesh {
     std::vector<uint32_t> file_vertex_;  ///< empty: no vertex was split
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

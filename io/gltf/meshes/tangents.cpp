@@ -5,7 +5,7 @@
 #include <numeric>
 #include <unordered_map>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Triangle = std::array<uint32_t, 3>;
@@ -217,4 +217,4 @@ void add_tangents(Mesh& mesh, const TextureSlot& normal_map) {
     if (!uv.empty()) TangentBuilder(mesh, std::move(uv)).build();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include "core/scene/texture.h"
 #include "io/gltf/meshes/source_mesh.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Scales normals to unit length. One without a length (or not finite) becomes the mean of the
 /// faces around it, weighted by area; returns how many there were.
@@ -28,4 +28,4 @@ void split_for_tangents(SourceMesh&, const TextureSlot& normal_map);
 /// Nothing happens without coordinates.
 void add_tangents(Mesh&, const TextureSlot& normal_map);
 
-}  // namespace petzval
+}  // namespace petzval::io

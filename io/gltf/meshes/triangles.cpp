@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 bool has_area(const Mesh& mesh, const std::array<uint32_t, 3>& t) {
@@ -39,4 +39,4 @@ size_t remove_zero_area(Mesh& mesh) {
     return std::erase_if(mesh.triangles, [&](const auto& t) { return !has_area(mesh, t); });
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

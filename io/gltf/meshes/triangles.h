@@ -8,7 +8,7 @@
 
 #include "core/scene/mesh.h"
 
-namespace petzval {
+namespace petzval::io {
 
 enum class TriangleMode { List, Strip, Fan };
 
@@ -21,4 +21,4 @@ enum class TriangleMode { List, Strip, Fan };
 /// told in float); returns how many there were.
 size_t remove_zero_area(Mesh&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using enum ExtensionUse;
@@ -126,4 +126,4 @@ std::optional<JsonCursor> meshopt_extension(const JsonCursor& owner) {
     return found ? found : owner.extension("EXT_meshopt_compression");
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -11,7 +11,7 @@
 
 #include "io/base/json_cursor.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Support of an extension.
 enum class ExtensionUse : uint8_t {
@@ -56,4 +56,4 @@ struct ExtensionInFile {
 /// part of the first, with the same members.
 [[nodiscard]] std::optional<JsonCursor> meshopt_extension(const JsonCursor& owner);
 
-}  // namespace petzval
+}  // namespace petzval::io

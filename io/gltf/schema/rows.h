@@ -9,7 +9,7 @@
 
 #include "io/base/json_cursor.h"
 
-namespace petzval {
+namespace petzval::io {
 
 enum class PropertyKind : uint8_t {
     Number,
@@ -183,4 +183,4 @@ inline constexpr GltfProperty kSlotRows[] = {
 };
 
 }  // namespace schema
-}  // namespace petzval
+}  // namespace petzval::io

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/schema/schema.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using namespace schema;
@@ -86,4 +86,4 @@ std::array<double, 4> numbers_of(const JsonCursor& thing, const GltfProperty& pr
     return numbers;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 
 #include "io/gltf/schema/rows.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Whether a row is that of a name: its key, or the end of its path where that is not enough
 /// ("KHR_materials_specular/specularFactor").
@@ -83,4 +83,4 @@ void each_property(const Object& thing, std::span<const GltfProperty> table, con
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

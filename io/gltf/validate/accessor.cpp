@@ -3,7 +3,7 @@
 
 #include <functional>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Decodes `count` elements that begin `stride` bytes apart, element i into row slot(i).
@@ -93,4 +93,4 @@ template void read_rows(const GltfAccessor&, float*, size_t);
 template void read_rows(const GltfAccessor&, double*, size_t);
 template void read_rows(const GltfAccessor&, uint32_t*, size_t);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -14,7 +14,7 @@
 
 #include "io/gltf/mend/attributes.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// The elements that a sparse accessor replaces.
 struct GltfSparse {
@@ -108,4 +108,4 @@ template <class Number>
 /// Indices of the elements that a sparse accessor replaces.
 [[nodiscard]] std::vector<uint32_t> indices_of(const GltfSparse&);
 
-}  // namespace petzval
+}  // namespace petzval::io

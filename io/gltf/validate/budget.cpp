@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr uint64_t free_bytes = uint64_t(256) << 20;
@@ -36,4 +36,4 @@ void GltfBudget::ask_decoded(uint64_t bytes, const JsonCursor& place) {
     decoded_ += bytes;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

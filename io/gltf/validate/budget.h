@@ -5,7 +5,7 @@
 
 #include "io/base/json_cursor.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Bytes that an instance takes while it is loaded, and in the BVH while that is built: measured,
 /// and rounded up.
@@ -38,4 +38,4 @@ class GltfBudget {
     uint64_t owned_ = 0, asked_ = 0, decoded_ = 0;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 
 #include "core/math/math.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Settings that a camera of the file asks for; io/gltf/validate/extras.h has the keys.
 struct CameraExtras {
@@ -18,4 +18,4 @@ struct CameraExtras {
     [[nodiscard]] bool any() const { return lens || aperture || fstop || focus_m || sensor_mm; }
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

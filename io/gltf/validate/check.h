@@ -19,7 +19,7 @@
 #include "io/gltf/validate/source.h"
 #include "io/gltf/validate/use.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// A file on its way through the checks.
 struct GltfCheck {
@@ -84,4 +84,4 @@ void check_animations(GltfCheck&);
 /// Checks values in the buffers: vertex and joint indices in range.
 void check_data(const GltfCheck&);
 
-}  // namespace petzval
+}  // namespace petzval::io

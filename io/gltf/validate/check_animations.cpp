@@ -13,7 +13,7 @@
 #include "io/gltf/animation/pose.h"
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -231,4 +231,4 @@ void check_animations(GltfCheck& check) {
         }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 #include "io/base/json_parse.h"
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr std::array collections = {"accessors", "animations", "buffers", "bufferViews", "cameras",
@@ -50,4 +50,4 @@ void check_collections(const GltfCheck& check) {
         for (const JsonCursor& object : check.root.objects(kind)) (void)object.text_or("name", "");
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

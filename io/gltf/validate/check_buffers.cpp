@@ -7,7 +7,7 @@
 #include "io/base/error.h"
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// The data of a checked bufferView; empty where its buffer has none.
@@ -180,4 +180,4 @@ void check_accessors(GltfCheck& check) {
         }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

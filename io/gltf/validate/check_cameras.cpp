@@ -5,7 +5,7 @@
 #include "io/gltf/validate/check.h"
 #include "io/gltf/validate/extras.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Warns of a type that is not known; one that has none was told of when it was mended.
@@ -44,4 +44,4 @@ void check_lights(GltfCheck& check) {
     for (const JsonCursor& light : lights->objects("lights")) check_light(check, light);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

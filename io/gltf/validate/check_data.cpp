@@ -8,7 +8,7 @@
 
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -131,4 +131,4 @@ void check_data(const GltfCheck& check) {
     check_joints(check, joints);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "io/gltf/schema/extensions.h"
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -139,4 +139,4 @@ void check_extensions(const GltfCheck& check) {
                             printable(extension.name), gltf_extension_advice(extension.name));
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

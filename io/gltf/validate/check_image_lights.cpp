@@ -6,7 +6,7 @@
 
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -58,4 +58,4 @@ void check_image_lights(GltfCheck& check) {
             (void)light->required_index("light", lights.size(), "light");
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -4,7 +4,7 @@
 #include "io/gltf/validate/extras.h"
 #include "io/gltf/validate/files.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 void check_texture_info(const JsonCursor& info, size_t textures) {
@@ -65,4 +65,4 @@ void check_materials(GltfCheck& check) {
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

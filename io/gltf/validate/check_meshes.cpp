@@ -10,7 +10,7 @@
 #include "io/gltf/mend/attributes.h"
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 class MeshCheck {
@@ -150,4 +150,4 @@ void check_meshes(GltfCheck& check) {
     for (const JsonCursor& mesh : check.root.objects("meshes")) meshes.check_mesh(mesh);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "io/gltf/validate/check.h"
 #include "io/gltf/validate/extras.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Greatest depth of the node tree, so that code may recurse. Deep rigs have about a hundred
@@ -181,4 +181,4 @@ void check_nodes(GltfCheck& check) {
     NodeCheck(check).run();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include "io/gltf/schema/extensions.h"
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// A RIFF container of the form type WEBP (RFC 9649, section 2.4).
@@ -61,4 +61,4 @@ void check_textures(GltfCheck& check) {
     for (const JsonCursor& texture : check.root.objects("textures")) check_texture(check, texture);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -3,7 +3,7 @@
 // material of its own too; only a material that is not there is refused.
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr const char* kExtension = "KHR_materials_variants";
@@ -37,4 +37,4 @@ void check_variants(GltfCheck& check) {
                     check_mapping(check, mapping, variants);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "io/gltf/schema/extensions.h"
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -84,4 +84,4 @@ void decode_buffer_views(GltfCheck& check) {
     }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

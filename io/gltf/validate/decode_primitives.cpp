@@ -8,7 +8,7 @@
 #include "io/gltf/compression/draco_mesh.h"
 #include "io/gltf/validate/check.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -197,4 +197,4 @@ void decode_primitives(GltfCheck& check) {
     decoder.store();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 // Range of a length, as on the command line: no product of two leaves a float.
@@ -161,4 +161,4 @@ CameraExtras camera_extras(const JsonCursor& camera) {
     return asked;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "io/gltf/validate/camera_extras.h"
 #include "io/gltf/validate/scene_extras.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// extras.petzval of an object. Other people's extras may be of any type: they are ignored.
 [[nodiscard]] std::optional<JsonCursor> petzval_extras(const JsonCursor& owner);
@@ -55,4 +55,4 @@ struct AreaExtras {
 /// should be.
 [[nodiscard]] CameraExtras camera_extras(const JsonCursor& camera);
 
-}  // namespace petzval
+}  // namespace petzval::io

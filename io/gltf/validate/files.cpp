@@ -15,7 +15,7 @@
 #include "io/gltf/schema/extensions.h"
 #include "io/spectra/spectra.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -232,4 +232,4 @@ void fetch_reflectance(GltfSource& source, const JsonCursor& extras, GltfBudget&
     source.reflectances.emplace(name, *std::move(found));
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

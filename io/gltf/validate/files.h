@@ -9,7 +9,7 @@
 #include "io/gltf/validate/source.h"
 #include "io/gltf/validate/use.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Container of the JSON: text, or a .glb with or without a binary chunk.
 struct GltfContainer {
@@ -31,4 +31,4 @@ void read_light_profiles(GltfSource& source, GltfBudget&);
 /// Adds to source.reflectances the one that a material's extras.petzval name, if any.
 void fetch_reflectance(GltfSource& source, const JsonCursor& extras, GltfBudget&);
 
-}  // namespace petzval
+}  // namespace petzval::io

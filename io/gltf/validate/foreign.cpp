@@ -8,7 +8,7 @@
 
 #include "io/base/ascii.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Format by the ending of its files. opens: Blender opens or imports it.
@@ -54,4 +54,4 @@ std::string foreign_scene_advice(const std::filesystem::path& file) {
     return "";
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

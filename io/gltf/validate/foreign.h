@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Advice about a file whose ending is that of another scene format, such as .usd, .obj or .fbx:
 /// the name of the format, and how it becomes glTF. Empty for any other ending.
 [[nodiscard]] std::string foreign_scene_advice(const std::filesystem::path&);
 
-}  // namespace petzval
+}  // namespace petzval::io

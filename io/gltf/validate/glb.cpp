@@ -7,7 +7,7 @@
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr size_t header_size = 12;
@@ -121,4 +121,4 @@ GlbChunks split_glb(std::span<const uint8_t> bytes, const std::string& file, War
     return Splitter(bytes, file, warnings).split();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

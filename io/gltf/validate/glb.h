@@ -10,7 +10,7 @@
 
 #include "io/base/warning_log.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Chunks of a .glb, views into the container's bytes.
 struct GlbChunks {
@@ -26,4 +26,4 @@ struct GlbChunks {
 [[nodiscard]] GlbChunks split_glb(std::span<const uint8_t> bytes, const std::string& file,
                                   WarningLog& warnings);
 
-}  // namespace petzval
+}  // namespace petzval::io

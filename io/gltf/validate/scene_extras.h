@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Settings that a scene of the file asks for; io/gltf/validate/extras.h has the keys.
 struct SceneExtras {
@@ -16,4 +16,4 @@ struct SceneExtras {
     std::optional<std::string> view;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -12,7 +12,7 @@
 #include "io/gltf/validate/foreign.h"
 #include "io/gltf/validate/glb.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Checks everything that consists of references and numbers only.
@@ -120,4 +120,4 @@ void pose_source(GltfSource& source, const AnimationChoice& choice) {
     std::swap(said, source.warnings);
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

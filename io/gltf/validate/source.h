@@ -15,7 +15,7 @@
 #include "io/gltf/schema/extensions.h"
 #include "io/gltf/validate/accessor.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Folders in which the files may lie that a scene names. Confined: that of the scene and those
 /// below it, all links followed.
@@ -63,4 +63,4 @@ struct GltfSource {
 /// Throws InputError.
 void pose_source(GltfSource&, const AnimationChoice&);
 
-}  // namespace petzval
+}  // namespace petzval::io

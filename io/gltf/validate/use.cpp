@@ -3,7 +3,7 @@
 
 #include "io/base/json_parse.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -113,4 +113,4 @@ GltfUse find_used(const json& root, std::span<const size_t> played) {
     return use;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

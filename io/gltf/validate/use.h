@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace petzval {
+namespace petzval::io {
 
 /// Which objects of a glTF file something refers to that is shown: a broken one that nothing needs
 /// is no reason to refuse the file. Meshes, skins, instances and animations that are played need
@@ -18,4 +18,4 @@ struct GltfUse {
 /// numbers of the animations.
 [[nodiscard]] GltfUse find_used(const nlohmann::json& root, std::span<const size_t> played);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr int kSide = 64;
@@ -22,8 +22,8 @@ bool in_disc(int pixel) {
 
 /// A dark frame with a bokeh disc, of light that `disc(pixel)` gives.
 template <class F>
-Picture with_disc(const F& disc) {
-    Picture p = test::picture(kSide, kSide, {"R", "G", "B"});
+io::Picture with_disc(const F& disc) {
+    io::Picture p = test::picture(kSide, kSide, {"R", "G", "B"});
     for (int pixel = 0; pixel < kSide * kSide; ++pixel)
         for (size_t c = 0; c < 3; ++c)
             p.pixels[3 * size_t(pixel) + c] = float(0.02 + (in_disc(pixel) ? disc(pixel) : 0));
@@ -31,9 +31,9 @@ Picture with_disc(const F& disc) {
 }
 
 /// A grey with normal noise of this deviation.
-Picture noisy(double grey, double deviation, uint32_t seed) {
+io::Picture noisy(double grey, double deviation, uint32_t seed) {
     test::Random random(seed);
-    Picture p = test::picture(kSide, kSide, {"R", "G", "B"});
+    io::Picture p = test::picture(kSide, kSide, {"R", "G", "B"});
     for (float& value : p.pixels)
         value = float(grey + deviation * std::sqrt(-2 * std::log(1 - double(random.next()))) *
                                  std::cos(2 * std::numbers::pi * double(random.next())));
@@ -43,11 +43,12 @@ Picture noisy(double grey, double deviation, uint32_t seed) {
 // The disc of a lamp that few samples hit: 1 in 32 pixels shows 32 times its light. A pinhole,
 // which has no disc at all, must not look better by far than this picture, whose light is right.
 TEST(ChartErrors, LosingADiscOfLightIsNoBetterThanItsNoise) {
-    const Picture reference = with_disc([](int) { return 1.; });
-    const Picture lost = with_disc([](int) { return 0.; });
+    const io::Picture reference = with_disc([](int) { return 1.; });
+    const io::Picture lost = with_disc([](int) { return 0.; });
     test::Random random(3);
-    const Picture fireflies = with_disc([&](int) { return random.next() < 1.f / 32 ? 32. : 0.; });
-    const Flip flip(reference);
+    const io::Picture fireflies =
+        with_disc([&](int) { return random.next() < 1.f / 32 ? 32. : 0.; });
+    const io::Flip flip(reference);
     const ChartSeed of_lost = errors_of(lost, reference, flip);
     const ChartSeed of_fireflies = errors_of(fireflies, reference, flip);
     EXPECT_GT(of_fireflies.relative_mse, 10 * of_lost.relative_mse) << "the fault that it had";
@@ -63,43 +64,45 @@ TEST(ChartErrors, LosingADiscOfLightIsNoBetterThanItsNoise) {
     EXPECT_NEAR(efficiencies(of)[1].to_first, 1, 0.1);
 
     // More samples of the lamp win, as they should.
-    const Picture smooth = with_disc([&](int) { return 0.5 + double(random.next()); });
+    const io::Picture smooth = with_disc([&](int) { return 0.5 + double(random.next()); });
     EXPECT_LT(errors_of(smooth, reference, flip).symmetric_mse, of_lost.symmetric_mse / 5);
 }
 
 TEST(ChartErrors, DoNotDependOnTheUnitOfLight) {
-    const Picture reference = noisy(1, 0.01, 1), picture = noisy(1, 0.1, 2);
-    const auto brighter = [](Picture p) {
+    const io::Picture reference = noisy(1, 0.01, 1), picture = noisy(1, 0.1, 2);
+    const auto brighter = [](io::Picture p) {
         for (float& value : p.pixels) value *= 1000;
         return p;
     };
-    const ChartSeed of = errors_of(picture, reference, Flip(reference));
+    const ChartSeed of = errors_of(picture, reference, io::Flip(reference));
     EXPECT_NEAR(of.symmetric_mse, 0.01 / (1 + 1. / 16), 0.001);
-    const Picture reference_1000 = brighter(reference);
-    EXPECT_NEAR(errors_of(brighter(picture), reference_1000, Flip(reference_1000)).symmetric_mse,
-                of.symmetric_mse, 1e-5 * of.symmetric_mse);
+    const io::Picture reference_1000 = brighter(reference);
+    EXPECT_NEAR(
+        errors_of(brighter(picture), reference_1000, io::Flip(reference_1000)).symmetric_mse,
+        of.symmetric_mse, 1e-5 * of.symmetric_mse);
 }
 
 // What a perfect picture is charged for is the reference's own error: the mean of four parts has a
 // quarter of the variance of one.
 TEST(ChartErrors, OwnErrorOfTheReferenceIsWhatAPerfectPictureIsCharged) {
-    std::vector<Picture> parts;
+    std::vector<io::Picture> parts;
     for (uint32_t i = 0; i < 4; ++i) parts.push_back(noisy(0.5, 0.05, 10 + i));
     const ChartReference reference = reference_of(parts, 0);
     const double expected = 0.0025 / 4 / (0.25 + 0.25 / 16);
     EXPECT_NEAR(reference.symmetric_mse.value(), expected, 0.05 * expected);
     const ChartSeed perfect =
-        errors_of(noisy(0.5, 0, 1), reference.picture, Flip(reference.picture));
+        errors_of(noisy(0.5, 0, 1), reference.picture, io::Flip(reference.picture));
     EXPECT_NEAR(perfect.symmetric_mse, reference.symmetric_mse.value(), 0.05 * expected);
 }
 
 TEST(ChartErrors, AFireflyInThePartsDoesNotHideItself) {
-    std::vector<Picture> parts(4, noisy(0.5, 0, 1));
+    std::vector<io::Picture> parts(4, noisy(0.5, 0, 1));
     const auto with_firefly = [&](float light) {
         auto some = parts;
         some[2].pixels[300] = light;
         const ChartReference reference = reference_of(some, 0);
-        const ChartSeed perfect = errors_of(parts[0], reference.picture, Flip(reference.picture));
+        const ChartSeed perfect =
+            errors_of(parts[0], reference.picture, io::Flip(reference.picture));
         const double values = double(parts[0].pixels.size());
         return std::pair{values * reference.symmetric_mse.value(), values * perfect.symmetric_mse};
     };
@@ -112,4 +115,4 @@ TEST(ChartErrors, AFireflyInThePartsDoesNotHideItself) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

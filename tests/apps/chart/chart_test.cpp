@@ -11,7 +11,7 @@
 #include "tests/support/cli.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using nlohmann::json;
@@ -138,7 +138,7 @@ class ChartRun : public CliTest {
     std::string refused(const ChartRequest& r) {
         try {
             static_cast<void>(run(r));
-        } catch (const ArgumentError& error) {
+        } catch (const io::ArgumentError& error) {
             EXPECT_EQ(listing(), (std::set<std::string>{"studio.glb"}));
             return error.what();
         }
@@ -153,8 +153,8 @@ class ChartRun : public CliTest {
     std::vector<MeasuredCase> cases_;
 
   private:
-    TbbExecutor executor_{2};
-    RenderMonitor monitor_;
+    integrator::TbbExecutor executor_{2};
+    integrator::RenderMonitor monitor_;
     double sample_s_ = 5e-3 / kPixels, before_s_ = 0;
     uint64_t samples_before_ = 0;
 };
@@ -190,7 +190,7 @@ TEST_F(ChartRun, WritesAReport) {
             EXPECT_EQ(p["seeds"].size(), kChartSeeds);
             for (const char* error : {"symmetric_mse", "relative_mse", "flip"})
                 EXPECT_NE(p["seeds"][0][error], p["seeds"][1][error]) << error;
-            EXPECT_LE(p["symmetric_mse"]["mean"], kMostSymmetricMse);
+            EXPECT_LE(p["symmetric_mse"]["mean"], io::kMostSymmetricMse);
             renders += p["seeds"].size();
             samples *= 2;
         }
@@ -206,7 +206,7 @@ TEST_F(ChartRun, WritesAReport) {
     EXPECT_TRUE(csv.starts_with(
         "axis,case,method,samples,seed,cpu_s,symmetric_mse,relative_mse,flip,believed\n"));
     const json& first_render = of["methods"][0]["points"][0]["seeds"][0];
-    const CsvText table = read_csv_text(path("report/points.csv"));
+    const io::CsvText table = io::read_csv_text(path("report/points.csv"));
     EXPECT_EQ(table.rows.size(), renders);
     for (size_t column = 5; column < 9; ++column) {  // cpu_s, and the errors
         const double value = first_render[table.names[column]];
@@ -291,7 +291,7 @@ TEST_F(ChartRun, OfGhostsLeavingThemOutIsOffByTheirLight) {
     ChartRequest asked = request({ChartAxis::Ghosts});
     asked.subject.request.scene = PETZVAL_ASSETS "/scenes/low_sun.glb";
     asked.subject.request.camera.lens = "takumar-50mm-f1.2";
-    asked.subject.request.camera.coating = Coating::Uncoated;
+    asked.subject.request.camera.coating = camera::Coating::Uncoated;
     asked.budget_s = 40;
     run(asked);
     ASSERT_EQ(cases_.size(), 1u);
@@ -301,12 +301,12 @@ TEST_F(ChartRun, OfGhostsLeavingThemOutIsOffByTheirLight) {
         return methods[method].points.back().symmetric_mse().mean;
     };
     EXPECT_GT(error(0), 4 * error(1)) << error(0) << ' ' << error(1);
-    EXPECT_EQ(cases_[0].of.methods[0].scene.camera.coating, Coating::Uncoated);
+    EXPECT_EQ(cases_[0].of.methods[0].scene.camera.coating, camera::Coating::Uncoated);
 }
 
 TEST_F(ChartRun, GhostsAreThoseOfTheLensOfItsYearWhereNothingReflects) {
     const RenderSetup first = set_up_render(request({}).subject.request, [](const std::string&) {});
-    const auto ghosts = [&](const std::string& lens, Coating coating) {
+    const auto ghosts = [&](const std::string& lens, camera::Coating coating) {
         ChartSubject subject = request({}).subject;
         subject.request.camera.lens = lens;
         subject.request.camera.focus = FocusDistance{2};
@@ -317,19 +317,19 @@ TEST_F(ChartRun, GhostsAreThoseOfTheLensOfItsYearWhereNothingReflects) {
                            })
             .front();
     };
-    const ChartCase year = ghosts("double-gauss-100mm-f2", Coating::Ideal),
-                    mgf2 = ghosts("double-gauss-100mm-f2", Coating::MgF2);
+    const ChartCase year = ghosts("double-gauss-100mm-f2", camera::Coating::Ideal),
+                    mgf2 = ghosts("double-gauss-100mm-f2", camera::Coating::MgF2);
     ASSERT_EQ(year.methods.size(), 2u);
-    EXPECT_EQ(year.methods[0].scene.camera.coating, Coating::Year);
+    EXPECT_EQ(year.methods[0].scene.camera.coating, camera::Coating::Year);
     EXPECT_EQ(year.methods[0].scene.camera.ghosts, GhostUse::Off);
     EXPECT_EQ(year.methods[1].scene.camera.ghosts, GhostUse::Auto);
     EXPECT_EQ(year.reference.scene.camera.ghosts, GhostUse::Auto);
-    EXPECT_EQ(mgf2.reference.scene.camera.coating, Coating::MgF2);
+    EXPECT_EQ(mgf2.reference.scene.camera.coating, camera::Coating::MgF2);
     // Of a lens that nobody knows the year of, there is nothing to compare, and a reason.
     std::ofstream(path("bare.json"))
         << R"({"surfaces": [{"radius": 50, "thickness": 5, "semi_diameter": 8,
             "medium": {"n": 1.5}}, {"radius": -50, "thickness": 48, "semi_diameter": 8, "stop": true, "medium": null}]})";
-    const ChartCase bare = ghosts(path("bare.json"), Coating::Ideal);
+    const ChartCase bare = ghosts(path("bare.json"), camera::Coating::Ideal);
     EXPECT_TRUE(bare.methods.empty());
     EXPECT_NE(bare.remarks.back().find("states no year"), std::string::npos) << bare.remarks.back();
 }
@@ -420,4 +420,4 @@ TEST_F(ChartCli, StopsAndSaysWhatThereIs) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

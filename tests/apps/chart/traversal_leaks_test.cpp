@@ -5,7 +5,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using test::diffuse_material;
@@ -47,4 +47,4 @@ TEST(TraversalLeaks, CutoutsHaveNone) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

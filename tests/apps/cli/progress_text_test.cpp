@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 std::string line(const ProgressGoal& goal, uint64_t samples, double elapsed_s, int columns = 40,
@@ -78,4 +78,4 @@ TEST(ProgressText, FitsWhateverTheFigures) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 #include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliCamera : public CliTest {
@@ -29,10 +29,10 @@ class CliCamera : public CliTest {
             words.insert(words.end(), {"--background", "1,1,1"});
         return run_petzval(render_words(words, scene));
     }
-    [[nodiscard]] Picture picture_of(const std::string& scene, const Words& more) {
+    [[nodiscard]] io::Picture picture_of(const std::string& scene, const Words& more) {
         const Finished done = finished(scene, more);
         EXPECT_EQ(done.exit_code, 0) << done.err;
-        return read_picture(path("out.exr"));
+        return io::read_picture(path("out.exr"));
     }
     [[nodiscard]] std::string refusal(const Words& more) { return refusal(scene_, more); }
     [[nodiscard]] std::string refusal(const std::string& scene, const Words& more) {
@@ -52,25 +52,25 @@ TEST_F(CliCamera, TheFilesCameraIsEnough) {
     const std::string full = scene_with("full.gltf", wishes);
     const Words spoken = {"--lens", "tessar-100mm-f2.8", "--fstop",      "4",        "--focus",
                           "2",      "--aperture",        "polygon:6,10", "--sensor", "30x20"};
-    const Picture a = picture_of(full, {}), b = picture_of(plain, spoken);
+    const io::Picture a = picture_of(full, {}), b = picture_of(plain, spoken);
     EXPECT_EQ(a.pixels, b.pixels);
     EXPECT_EQ(metadata_of(a, "petzval:aperture"), "polygon:6,10");
     // What the user says wins, wish by wish.
-    const Picture c = picture_of(full, {"--aperture", "circle", "--focus", "3"});
-    const Picture d = picture_of(plain, {"--lens", "tessar-100mm-f2.8", "--fstop", "4", "--focus",
-                                         "3", "--sensor", "30x20"});
+    const io::Picture c = picture_of(full, {"--aperture", "circle", "--focus", "3"});
+    const io::Picture d = picture_of(plain, {"--lens", "tessar-100mm-f2.8", "--fstop", "4",
+                                             "--focus", "3", "--sensor", "30x20"});
     EXPECT_EQ(c.pixels, d.pixels);
     EXPECT_NE(c.pixels, a.pixels);
-    const Picture pinhole = picture_of(full, {"--lens", "pinhole"});
+    const io::Picture pinhole = picture_of(full, {"--lens", "pinhole"});
     EXPECT_EQ(pinhole.pixels, picture_of(plain, {"--sensor", "30x20"}).pixels);
-    const Picture thin = picture_of(full, {"--lens", "thin"});
+    const io::Picture thin = picture_of(full, {"--lens", "thin"});
     EXPECT_EQ(thin.pixels, picture_of(plain, {"--fstop", "4", "--focus", "2", "--aperture",
                                               "polygon:6,10", "--sensor", "30x20"})
                                .pixels);
     // A radius goes with a thin lens, not with the file's lens of glass.
     EXPECT_NE(finished(full, {"--method", "lens-radius=0.02"}).err.find("leave out"),
               std::string::npos);
-    const Picture radius = picture_of(full, {"--lens", "thin", "--method", "lens-radius=0.02"});
+    const io::Picture radius = picture_of(full, {"--lens", "thin", "--method", "lens-radius=0.02"});
     EXPECT_EQ(radius.pixels, picture_of(plain, {"--method", "lens-radius=0.02", "--focus", "2",
                                                 "--aperture", "polygon:6,10", "--sensor", "30x20"})
                                  .pixels);
@@ -133,7 +133,7 @@ TEST_F(CliCamera, PhotographicExposureFollowsIrisShutterAndSpeed) {
             more.insert(more.end(), even.begin(), even.end());
         return green(more);
     };
-    const double film_mm = image_distance_mm(50, 1000), radius_mm = 50 / 4.;
+    const double film_mm = camera::image_distance_mm(50, 1000), radius_mm = 50 / 4.;
     const double sine = std::sin(std::atan(radius_mm / film_mm));
     const double expected = std::numbers::pi * sine * sine * 100 / 50 * 200 / 78;
     EXPECT_NEAR(with({"--focal-length", "50", "--fstop", "2", "--focus", "1"}) / expected, 1, 1e-4);
@@ -166,7 +166,7 @@ TEST_F(CliCamera, CornersDarkenAsTheyDoBehindAStop) {
     const auto corner_over_middle = [&](Words words) {
         words.insert(words.end(), {"--look-at", "0,0,5,0,0,6", "--background", "100,100,100",
                                    "--size", "33x21", "--spp", "64"});
-        const Picture p = picture_of(scene_, words);
+        const io::Picture p = picture_of(scene_, words);
         return double(value_at(p, 0, 0, "G")) / double(value_at(p, 16, 10, "G"));
     };
     const auto foote = [](double radius_mm, double distance_mm, double off_mm) {
@@ -176,7 +176,7 @@ TEST_F(CliCamera, CornersDarkenAsTheyDoBehindAStop) {
     };
     // The corner pixel's middle on a film 36 mm wide.
     const double off_mm = 36. / 33 * std::hypot(16., 10.);
-    const double film_mm = image_distance_mm(28, 1000);
+    const double film_mm = camera::image_distance_mm(28, 1000);
     const Words photographic = {"--exposure-mode", "photographic"};
     for (const std::string lens : {"thin", "singlet:schott:N-BK7"})
         for (const double fstop : {4., 8.}) {
@@ -221,15 +221,15 @@ TEST_F(CliCamera, TheFocalLengthIsTooNear) {
 
 // Of film distance, distance in focus and focal length any two give the third.
 TEST_F(CliCamera, TwoDistancesGiveTheThird) {
-    const double film_mm = image_distance_mm(50, 1500);
+    const double film_mm = camera::image_distance_mm(50, 1500);
     const std::string film = fmt::format("{:.9g}", film_mm);
     const Words view = {"--look-at", "0,0,0,0,0,-1", "--fstop", "1.4"};
     const auto picture = [&](Words more) {
         more.insert(more.begin(), view.begin(), view.end());
         return picture_of(scene_, more);
     };
-    const Picture expected = picture({"--focal-length", "50", "--focus", "1.5"});
-    const auto expect_same = [&](const Picture& p) {
+    const io::Picture expected = picture({"--focal-length", "50", "--focus", "1.5"});
+    const auto expect_same = [&](const io::Picture& p) {
         for (size_t i = 0; i < p.pixels.size(); ++i)
             ASSERT_NEAR(p.pixels[i], expected.pixels[i], 2e-4f) << i;
     };
@@ -262,16 +262,16 @@ TEST_F(CliCamera, TheFirstRadiusFacesTheScene) {
                                  "-0.2,0,0,-0.2,0,-1", "--spp", "64"});
         return picture_of(scene_, more);
     };
-    const auto error_of = [&](const Picture& a, const Picture& b) {
+    const auto error_of = [&](const io::Picture& a, const io::Picture& b) {
         double sum = 0;
         for (size_t i = 0; i < a.pixels.size(); ++i)
             sum += std::fabs(double(a.pixels[i]) - double(b.pixels[i]));
         return sum / double(a.pixels.size());
     };
-    const Picture front = picture(fmt::format("{:.9g},inf", radius_mm), {});
-    const Picture back = picture(fmt::format("inf,{:.9g}", -radius_mm), {});
-    const Picture bent = picture("1", {"--focal-length", "100"});
-    const Picture turned = picture("-1", {"--focal-length", "100"});
+    const io::Picture front = picture(fmt::format("{:.9g},inf", radius_mm), {});
+    const io::Picture back = picture(fmt::format("inf,{:.9g}", -radius_mm), {});
+    const io::Picture bent = picture("1", {"--focal-length", "100"});
+    const io::Picture turned = picture("-1", {"--focal-length", "100"});
     EXPECT_LT(error_of(front, bent), 1e-5);
     EXPECT_LT(error_of(back, turned), 1e-5);
     EXPECT_GT(error_of(front, back), 1e-3);
@@ -389,4 +389,4 @@ TEST_F(CliCamera, RefusesWhatDoesNotGoTogether) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

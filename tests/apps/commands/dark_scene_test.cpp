@@ -3,7 +3,7 @@
 #include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliDarkScene : public CliTest {
@@ -34,7 +34,7 @@ class CliDarkScene : public CliTest {
         double largest;
         int least_margin_px;
     };
-    static Extent extent(const Picture& p) {
+    static Extent extent(const io::Picture& p) {
         int left = p.width, right = -1, top = p.height, bottom = -1;
         for (int y = 0; y < p.height; ++y)
             for (int x = 0; x < p.width; ++x) {
@@ -49,7 +49,7 @@ class CliDarkScene : public CliTest {
 
 TEST_F(CliDarkScene, IsLitByTheStudio) {
     const Words small = {"--size", "120x80", "--spp", "8", "--aov", "normal"};
-    const Picture seen = render(small, "seen.exr");
+    const io::Picture seen = render(small, "seen.exr");
     EXPECT_EQ(metadata_of(seen, "petzval:environment"), "studio");
     EXPECT_EQ(metadata_of(seen, "petzval:background"), "(none)");
     // Mean of the sides of the box, told by their normals.
@@ -87,9 +87,9 @@ TEST_F(CliDarkScene, IsLitByTheStudioWhereSomethingOnlyGlows) {
     };
     const nlohmann::json faint = {{"emissiveFactor", {0.009, 0.009, 0.009}}};
     EXPECT_TRUE(told(faint));
-    EXPECT_GT(value_at(read_picture(path("a.exr")), 12, 8, "G"), 0.1f);
+    EXPECT_GT(value_at(io::read_picture(path("a.exr")), 12, 8, "G"), 0.1f);
     EXPECT_FALSE(told(faint, {"--background", "0,0,0"}));
-    EXPECT_LT(value_at(read_picture(path("a.exr")), 12, 8, "G"), 0.02f);
+    EXPECT_LT(value_at(io::read_picture(path("a.exr")), 12, 8, "G"), 0.02f);
     EXPECT_FALSE(told({{"emissiveFactor", {0.2, 0.2, 0.2}}}));
     nlohmann::json lamp = {{"emissiveFactor", {1, 1, 1}}};
     lamp["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 2;
@@ -106,10 +106,10 @@ TEST_F(CliDarkScene, AFocusBeyondAllIsCalledInfinity) {
 }
 
 TEST_F(CliDarkScene, KeepsTheLightThatIsAskedFor) {
-    const Picture white = render({"--background", "1,1,1", "--spp", "64", "--size", "24x16"});
+    const io::Picture white = render({"--background", "1,1,1", "--spp", "64", "--size", "24x16"});
     EXPECT_EQ(value_at(white, 0, 0, "G"), 1.f);
     EXPECT_EQ(metadata_of(white, "petzval:environment"), "(none)");
-    const Picture clear = render({"--transparent", "--size", "24x16"});
+    const io::Picture clear = render({"--transparent", "--size", "24x16"});
     EXPECT_EQ(value_at(clear, 0, 0, "A"), 0.f);
     EXPECT_EQ(value_at(clear, 0, 0, "G"), 0.f);
     EXPECT_GT(value_at(clear, 12, 8, "G"), 0.1f);
@@ -135,7 +135,7 @@ TEST_F(CliDarkScene, FillsThePictureOfALensThatIsFocusedNear) {
             words.insert(words.end(), {"-o", path("lens.exr"), "--quiet"});
             const Finished done = run_petzval(render_words(words, scene_));
             ASSERT_EQ(done.exit_code, 0) << done.err;
-            const Extent of = extent(read_picture(path("lens.exr")));
+            const Extent of = extent(io::read_picture(path("lens.exr")));
             EXPECT_GT(of.largest, 0.8) << side_m << lens[1];
             EXPECT_GE(of.least_margin_px, 1) << side_m << lens[1];
         }
@@ -143,4 +143,4 @@ TEST_F(CliDarkScene, FillsThePictureOfALensThatIsFocusedNear) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

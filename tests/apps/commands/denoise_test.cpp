@@ -8,7 +8,7 @@
 
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using testing::HasSubstr;
@@ -31,9 +31,9 @@ TEST_F(CliDenoise, TheDenoisedPictureStandsBesideTheOther) {
     const Finished run = denoised({"--spp", "16", "--stats", path("stats.json")});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_THAT(run.err, HasSubstr("denoised: error "));
-    const Picture picture = read_picture(path("a.exr"));
+    const io::Picture picture = io::read_picture(path("a.exr"));
     for (const char* channel : {"R", "denoised.R", "denoised.G", "denoised.B", "denoised.error"})
-        EXPECT_GE(channel_index(picture, channel), 0) << channel;
+        EXPECT_GE(io::channel_index(picture, channel), 0) << channel;
     const nlohmann::json json = stats()["denoised"];
     EXPECT_LE(json["picture"]["bounds"][0], json["picture"]["error"]);
     EXPECT_LE(json["picture"]["error"], json["picture"]["bounds"][1]);
@@ -43,16 +43,17 @@ TEST_F(CliDenoise, TheDenoisedPictureStandsBesideTheOther) {
 TEST_F(CliDenoise, ADisplayShowsTheDenoisedPicture) {
     ASSERT_EQ(denoised({"--spp", "4", "-o", path("a.png")}).exit_code, 0);
     ASSERT_EQ(run_petzval({"image", "view", path("a.exr"), "-o", path("noisy.png")}).exit_code, 0);
-    EXPECT_NE(read_picture(path("a.png")).pixels, read_picture(path("noisy.png")).pixels);
+    EXPECT_NE(io::read_picture(path("a.png")).pixels, io::read_picture(path("noisy.png")).pixels);
 }
 
 TEST_F(CliDenoise, ACropHasTheBytesOfTheFrame) {
     ASSERT_EQ(denoised({"--spp", "4"}).exit_code, 0);
     ASSERT_EQ(denoised({"--spp", "4", "--crop", "20,10,21,13"}, "crop.exr").exit_code, 0);
-    const Picture whole = read_picture(path("a.exr")), crop = read_picture(path("crop.exr"));
+    const io::Picture whole = io::read_picture(path("a.exr")),
+                      crop = io::read_picture(path("crop.exr"));
     ASSERT_EQ(crop.channels, whole.channels);
     const size_t channels = whole.channels.size();
-    const auto red = static_cast<size_t>(channel_index(whole, "denoised.R"));
+    const auto red = static_cast<size_t>(io::channel_index(whole, "denoised.R"));
     for (size_t y = 0; y < 13; ++y)
         for (size_t x = 0; x < 21; ++x)
             for (size_t c = red; c < red + 3; ++c)
@@ -116,4 +117,4 @@ TEST_F(CliDenoise, WhatDoesNotGoTogetherIsRefused) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -3,7 +3,7 @@
 #include "io/image/picture_files.h"
 #include "tests/support/cli_spectral.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Small lamps through an iris of five blades.
@@ -51,7 +51,8 @@ TEST_F(CliDiffraction, SpreadsTheLightOfLamps) {
     scene_ = PETZVAL_ASSETS "/scenes/low_sun.glb";
     for (const Words& camera : {thin_, lens_}) {
         const auto light = [&](const char* use) {
-            const Picture p = render(stopped_down(camera, {"--spp", "128", "--diffraction", use}));
+            const io::Picture p =
+                render(stopped_down(camera, {"--spp", "128", "--diffraction", use}));
             double sum = 0;
             std::vector<float> values;
             for (int y = 0; y < 32; ++y)
@@ -71,4 +72,4 @@ TEST_F(CliDiffraction, SpreadsTheLightOfLamps) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

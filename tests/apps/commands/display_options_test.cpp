@@ -6,7 +6,7 @@
 #include "tests/support/cli.h"
 #include "tests/support/ocio_config.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliDisplay : public CliTest {
@@ -52,7 +52,7 @@ TEST_F(CliDisplay, AConfigurationTakesThePlaceOfOurs) {
         words.insert(words.end(), more.begin(), more.end());
         const Finished run = run_petzval(words);
         EXPECT_EQ(run.exit_code, 0) << run.err;
-        return read_picture(path("b.png")).pixels;
+        return io::read_picture(path("b.png")).pixels;
     };
     const auto raw = view({"--view", "raw"});
     EXPECT_NE(raw, view({}));
@@ -133,4 +133,4 @@ TEST_F(CliDisplay, DisplayValuesAreNotLight) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

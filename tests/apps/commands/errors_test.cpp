@@ -2,7 +2,7 @@
 // What the program refuses: one line, an exit code, and nothing left behind.
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliErrors : public CliTest {};
@@ -167,4 +167,4 @@ TEST_F(CliErrors, StandardStreamsThatAreFull) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -3,7 +3,7 @@
 #include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliExposure : public CliTest {
@@ -31,7 +31,9 @@ class CliExposure : public CliTest {
         const size_t begin = at + key.size();
         return text.substr(begin, text.find_first_of(" )\n", begin) - begin);
     }
-    static double middle(const Picture& p) { return value_at(p, p.width / 2, p.height / 2, "B"); }
+    static double middle(const io::Picture& p) {
+        return value_at(p, p.width / 2, p.height / 2, "B");
+    }
 };
 
 TEST_F(CliExposure, APictureThatIsAlmostBlackSaysWhatToType) {
@@ -43,11 +45,11 @@ TEST_F(CliExposure, APictureThatIsAlmostBlackSaysWhatToType) {
         << dark.err;
     EXPECT_NE(dark.err.find(" EV below mid-grey; try --exposure "), std::string::npos);
     EXPECT_GT(std::stod(typed(dark.err)), 5);
-    EXPECT_LT(middle(read_picture(path("a.png"))), 0.1);
+    EXPECT_LT(middle(io::read_picture(path("a.png"))), 0.1);
 
     const Finished better = run(scene, {"-o", path("b.png"), "--exposure", typed(dark.err)});
     EXPECT_EQ(better.err.find("the picture"), std::string::npos) << better.err;
-    EXPECT_GT(middle(read_picture(path("b.png"))), 0.2);
+    EXPECT_GT(middle(io::read_picture(path("b.png"))), 0.2);
 }
 
 // As of 64 pixels of a hundred that are lit, and 81 of all, which is not yet almost black.
@@ -110,8 +112,9 @@ TEST_F(CliExposure, AutoIsANumberThatCanBeTyped) {
     EXPECT_TRUE(file_bytes(path("auto.png")) == file_bytes(path("typed.png")));
     const auto stats = nlohmann::json::parse(file_bytes(path("stats.json")));
     EXPECT_EQ(stats.at("exposure_ev").dump(), ev);
-    EXPECT_FLOAT_EQ(std::stof(metadata_of(read_picture(path("auto.exr")), "petzval:exposure_ev")),
-                    std::stof(ev));
+    EXPECT_FLOAT_EQ(
+        std::stof(metadata_of(io::read_picture(path("auto.exr")), "petzval:exposure_ev")),
+        std::stof(ev));
 }
 
 TEST_F(CliExposure, AutoDoesNotDependOnCropSamplesAndThreads) {
@@ -123,9 +126,9 @@ TEST_F(CliExposure, AutoDoesNotDependOnCropSamplesAndThreads) {
         return typed(run(scene, all).err);
     };
     const std::string ev = with({});
-    const Picture whole = read_picture(path("a.png"));
+    const io::Picture whole = io::read_picture(path("a.png"));
     EXPECT_EQ(with({"--crop", "20,10,5,4"}), ev);
-    const Picture part = read_picture(path("a.png"));
+    const io::Picture part = io::read_picture(path("a.png"));
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 5; ++x)
             for (const char* c : {"R", "G", "B"})
@@ -154,4 +157,4 @@ TEST_F(CliExposure, APictureIsShownWithAnExposureThatIsFoundInIt) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

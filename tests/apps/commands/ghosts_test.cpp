@@ -6,7 +6,7 @@
 #include "io/image/picture_files.h"
 #include "tests/support/cli_spectral.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Small lamps, through a traced lens of its year's coating.
@@ -28,9 +28,9 @@ TEST_F(CliGhosts, PictureWithoutTheirLayerIsThatOfALensWithout) {
             ghosts.insert(ghosts.end(), {"--spp", "9", "--method", "dispersion=hero"});
             return coated(ghosts);
         };
-        const Picture both = render(with({"--aov", "ghosts"})),
-                      off = render(with({"--ghosts", "off"})),
-                      only = render(with({"--ghosts", "only", "--aov", "ghosts"}));
+        const io::Picture both = render(with({"--aov", "ghosts"})),
+                          off = render(with({"--ghosts", "off"})),
+                          only = render(with({"--ghosts", "only", "--aov", "ghosts"}));
         double light = 0;
         for (int y = 0; y < 32; ++y)
             for (int x = 0; x < 48; ++x)
@@ -61,7 +61,7 @@ TEST_F(CliGhosts, AlphaAndLayersStay) {
     const Words more = {"--spp", "8", "--transparent", "--aov", "normal,depth,ghosts"};
     Words off = more;
     off.insert(off.end(), {"--ghosts", "off"});
-    const Picture with = render(coated(more)), without = render(coated(off));
+    const io::Picture with = render(coated(more)), without = render(coated(off));
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 48; ++x) {
             for (const char* c : {"A", "normal.X", "normal.Z", "depth.Z"})
@@ -98,7 +98,7 @@ TEST_F(CliGhosts, HaveTheColourOfTheirCoating) {
     file.add_root(
         {{"rotation", {0, 1, 0, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     use(file);
-    const Picture ghosts =
+    const io::Picture ghosts =
         render({"--lens", path("single.json"), "--fstop", "64", "--focus", "infinity", "--ghosts",
                 "only", "--method", "coating=mgf2", "--spectral", "wavelengths", "--background",
                 "0,0,0", "--size", "48x32", "--spp", "512"});
@@ -107,8 +107,8 @@ TEST_F(CliGhosts, HaveTheColourOfTheirCoating) {
         for (int x = 0; x < 48; ++x)
             rgb += V3d(double(value_at(ghosts, x, y, "R")), double(value_at(ghosts, x, y, "G")),
                        double(value_at(ghosts, x, y, "B")));
-    const auto xyz_bar = standard_observer();
-    const SpectrumTable d65 = find_illuminant("d65");
+    const auto xyz_bar = io::standard_observer();
+    const SpectrumTable d65 = io::find_illuminant("d65");
     V3d expected(0.), white(0.);
     for (int nm = kFirst_nm; nm <= kLast_nm; ++nm) {
         const double r = layer_reflects(kGlass, kLayer, nm);
@@ -149,4 +149,4 @@ TEST_F(CliGhosts, SayWhereThereAreNone) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

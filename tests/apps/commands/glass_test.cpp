@@ -5,7 +5,7 @@
 
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using testing::HasSubstr;
@@ -132,4 +132,4 @@ TEST_F(CliGlass, VolumesThatAreNotClosedAreNamed) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

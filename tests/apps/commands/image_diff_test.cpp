@@ -3,15 +3,15 @@
 #include "tests/support/cli.h"
 #include "tests/support/pictures.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliImageDiff : public CliTest {
   protected:
     /// One pixel of R, G, B and a depth.
     std::string one_pixel(const std::string& name, float grey, float depth) {
-        write_exr(path(name),
-                  test::picture(1, 1, {"R", "G", "B", "depth.Z"}, {grey, grey, grey, depth}));
+        io::write_exr(path(name),
+                      test::picture(1, 1, {"R", "G", "B", "depth.Z"}, {grey, grey, grey, depth}));
         return path(name);
     }
 };
@@ -40,4 +40,4 @@ TEST_F(CliImageDiff, HelpSaysWhatTheErrorsAre) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

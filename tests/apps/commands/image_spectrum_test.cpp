@@ -5,7 +5,7 @@
 #include "tests/support/cli.h"
 #include "tests/support/pictures.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliSpectrum : public CliTest {
@@ -13,13 +13,13 @@ class CliSpectrum : public CliTest {
     /// A crop of 3 x 2 pixels from 4,5 with R, G, B and these wavelengths.
     std::string spectral(const std::string& name, const std::vector<double>& wavelengths_nm,
                          std::vector<std::string> channels = {"R", "G", "B"}) {
-        for (const double nm : wavelengths_nm) channels.push_back(spectral_channel(nm));
-        Picture p = test::picture(3, 2, std::move(channels));
+        for (const double nm : wavelengths_nm) channels.push_back(io::spectral_channel(nm));
+        io::Picture p = test::picture(3, 2, std::move(channels));
         p.x = 4;
         p.y = 5;
         p.full_width = p.full_height = 10;
         for (size_t i = 0; i < p.pixels.size(); ++i) p.pixels[i] = float(i) / 8;
-        write_exr(path(name), p);
+        io::write_exr(path(name), p);
         return path(name);
     }
 };
@@ -41,7 +41,7 @@ TEST_F(CliSpectrum, PlotsThePixelsBins) {
         EXPECT_EQ(run.exit_code, 0) << run.err;
         EXPECT_EQ(run.out, "385 0.375\n395 0.5\n405 0.625\n");
     }
-    EXPECT_EQ(read_picture(path("plot.png")).width, 960);
+    EXPECT_EQ(io::read_picture(path("plot.png")).width, 960);
     const std::string svg = file_bytes(path("plot.svg"));
     for (const char* text : {"pixel 4,5 of ", "it's_a.exr", "wavelength (nm)", "W m⁻² sr⁻¹ nm⁻¹"})
         EXPECT_NE(svg.find(text), std::string::npos) << text;
@@ -74,11 +74,11 @@ TEST_F(CliSpectrum, RefusesWhatIsNotThere) {
 TEST_F(CliSpectrum, DiffComparesTheBinsAsOneLayer) {
     const std::string a = spectral("a.exr", {385, 395, 405}),
                       b = spectral("b.exr", {385, 395, 405});
-    Picture p = read_picture(b);
+    io::Picture p = io::read_picture(b);
     // Each pixel's 395 nm by one more; then one more still in the last pixel.
-    const size_t at = size_t(channel_index(p, "S0.395,0nm"));
+    const size_t at = size_t(io::channel_index(p, "S0.395,0nm"));
     for (size_t i = 0; i < 6; ++i) p.pixels[i * p.channels.size() + at] += i == 5 ? 2.f : 1.f;
-    write_exr(b, p);
+    io::write_exr(b, p);
     const Finished run = run_petzval({"image", "diff", a, b});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_NE(run.out.find("RGB: symmetric MSE 0, RMSE 0,"), std::string::npos) << run.out;
@@ -112,4 +112,4 @@ TEST_F(CliSpectrum, DiffSaysWhatIsNotTheSame) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

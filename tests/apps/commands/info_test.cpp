@@ -2,7 +2,7 @@
 // petzval info: its table of extensions, and its JSON.
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using nlohmann::json;
@@ -168,4 +168,4 @@ TEST_F(Info, OfAnEmptyFile) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 #include "tests/support/cli.h"
 #include "tests/support/lens_json.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using nlohmann::json;
@@ -150,7 +150,7 @@ TEST_P(LensTrace, RaysAreTheOracles) {
             if (reverse) words.push_back("--reverse");
             if (unclipped) words.push_back("--unclipped");
             EXPECT_EQ(output_of(words), "");
-            const CsvText out = read_csv_text(path("out.csv"));
+            const io::CsvText out = io::read_csv_text(path("out.csv"));
             ASSERT_EQ(out.rows.size(), rows.size());
             int passed = 0;
             for (size_t i = 0; i < rows.size(); ++i) {
@@ -229,7 +229,7 @@ TEST_F(LensCli, PrintsSpots) {
     ASSERT_EQ(std::sscanf(text.c_str() + d, " d %lf %lf %lf", &x, &y, &rms), 3);
     EXPECT_NEAR(rms, 74.7596, 0.2);
     EXPECT_NEAR(std::hypot(x, y), 0, 1e-6);
-    const CsvTable table = read_csv(path("a.csv"));
+    const io::CsvTable table = io::read_csv(path("a.csv"));
     EXPECT_EQ(table.names, (Words{"field_deg", "nm", "x_mm", "y_mm"}));
     EXPECT_GT(table.rows.size(), 1000u);
     const std::string best =
@@ -274,26 +274,26 @@ TEST_F(LensCli, PlotsEachAnalysis) {
         words.insert(words.end(), more.begin(), more.end());
         (void)output_of(words);
         EXPECT_TRUE(holds(file_bytes(path("a.svg")), "</svg>")) << analysis;
-        return read_csv(path("a.csv"));
+        return io::read_csv(path("a.csv"));
     };
-    const CsvTable fan = plotted("fan", {"--field", "5"});
+    const io::CsvTable fan = plotted("fan", {"--field", "5"});
     EXPECT_EQ(fan.rows.front()[0], 5);
     EXPECT_GT(fan.rows.size(), 6u * 40);
 
-    const CsvTable mtf = plotted("mtf", {"--field", "0,7", "--cycles", "40"});
+    const io::CsvTable mtf = plotted("mtf", {"--field", "0,7", "--cycles", "40"});
     EXPECT_EQ(mtf.rows.size(), 2u * 51);
     EXPECT_EQ(mtf.rows.front()[2], 1);
     EXPECT_EQ(mtf.rows.back()[1], 40);
     EXPECT_LT(mtf.rows.back()[2], 0.7);
     EXPECT_TRUE(holds(file_bytes(path("a.svg")), "geometric MTF"));
 
-    const CsvTable distortion = plotted("distortion", {});
+    const io::CsvTable distortion = plotted("distortion", {});
     EXPECT_EQ(distortion.rows.size(), 40u);
     EXPECT_EQ(distortion.rows.back()[0], 14);
     EXPECT_NEAR(distortion.rows.back()[2], 100.00372 * std::tan(14 * std::numbers::pi / 180), 1e-4);
 
     // The oracle's irradiance at 17.465 mm.
-    const CsvTable light = plotted("vignetting", {"--image-circle", "34.93"});
+    const io::CsvTable light = plotted("vignetting", {"--image-circle", "34.93"});
     EXPECT_EQ(light.rows.front()[2], 1);
     EXPECT_NEAR(light.rows.back()[1], 0.15314484, 0.0006);
 }
@@ -309,7 +309,7 @@ TEST_F(LensCli, DistortionSaysWhatItLeavesOut) {
     const std::string err = said({"--field", "0,60,90,95"});
     EXPECT_TRUE(holds(err, "left out: 90°, 95°: f tan(field)")) << err;
     EXPECT_TRUE(holds(err, "left out: 0°: the ideal height is 0")) << err;
-    EXPECT_EQ(read_csv(path("a.csv")).rows.size(), 1u);
+    EXPECT_EQ(io::read_csv(path("a.csv")).rows.size(), 1u);
     EXPECT_TRUE(
         holds(said({"--field", "10,60,85"}, "takumar-50mm-f1.2"), "left out: 60°, 85°: no ray"));
     EXPECT_EQ(said({"--field", "10,60"}), "");
@@ -385,7 +385,7 @@ TEST_F(LensCli, SaysWhereTheLightGoes) {
     const std::string budget = output_of({"budget", kLens, "--coating", "V-Coat", "--field", "0,10",
                                           "--csv", csv, "-o", path("a.svg")});
     EXPECT_EQ(count_of(budget, " 100.000\n"), 6u) << budget;
-    const CsvTable table = read_csv(csv);
+    const io::CsvTable table = io::read_csv(csv);
     ASSERT_EQ(table.rows.size(), 6u);
     for (const auto& row : table.rows) {
         double sum = 0;
@@ -430,4 +430,4 @@ TEST_F(LensCli, RefusesBadRequests) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

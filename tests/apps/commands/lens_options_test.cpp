@@ -6,14 +6,14 @@
 #include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliLens : public CliTest {
   protected:
     CliLens() { scene_ = TinyGltf().save_gltf(folder_.path / "empty.gltf").string(); }
     /// A uniform world of 1 nit through a lens.
-    [[nodiscard]] Picture flat(const Words& more) {
+    [[nodiscard]] io::Picture flat(const Words& more) {
         Words words = {"--background", "1,1,1",  "--look-at", "0,0,0,0,0,-1", "--focus",
                        "100m",         "--size", "30x20",     "--spp",        "256"};
         words.insert(words.end(), more.begin(), more.end());
@@ -26,7 +26,7 @@ class CliLens : public CliTest {
     }
 };
 
-float middle(const Picture& p, const char* channel) {
+float middle(const io::Picture& p, const char* channel) {
     double sum = 0;
     for (int y = 8; y < 12; ++y)
         for (int x = 12; x < 18; ++x) sum += value_at(p, x, y, channel);
@@ -41,7 +41,7 @@ TEST_F(CliLens, MidGreyIsMidGreyThroughEveryLens) {
           Words{"--lens", "double-gauss-100mm-f2", "--fstop", "8", "--aperture", "star:5"},
           Words{"--lens", "schneider-anamorphic-31mm", "--method", "dispersion=shared"},
           Words{"--lens", "tessar-100mm-f2.8", "--method", "dispersion=hero"}}) {
-        const Picture p = flat(words);
+        const io::Picture p = flat(words);
         for (const char* c : {"R", "G", "B"})
             EXPECT_NEAR(middle(p, c), 1.f, 0.06f) << words[1] << ' ' << c;
         EXPECT_EQ(metadata_of(p, "petzval:lens"), words[1]);
@@ -57,7 +57,7 @@ TEST_F(CliLens, FocusMeansTheSameForRenderAndForTheBench) {
     for (const auto& [lens, focus] : cases)
         for (const std::string by : {"paraxial", "traced"}) {
             if (by == "traced" && std::string(focus) != "infinity") continue;
-            const Picture p =
+            const io::Picture p =
                 render({"--lens", lens, "--focus", focus, "--method", "focus-by=" + std::string(by),
                         "--background", "1,1,1", "--look-at", "0,0,0,0,0,-1", "--spp", "1",
                         "--spectral", "rgb"});
@@ -87,14 +87,14 @@ TEST_F(CliLens, AThinLensFocusesAtInfinity) {
     for (const char* lens : {"thin", "singlet:schott:N-BK7"}) {
         Words words = {"--lens", lens, "--fstop", "8", "--focus", "infinity"};
         words.insert(words.end(), at.begin(), at.end());
-        const Picture p = render(words);
+        const io::Picture p = render(words);
         EXPECT_EQ(metadata_of(p, "petzval:focus_m"), "inf") << lens;
         for (const float v : p.pixels) ASSERT_TRUE(std::isfinite(v)) << lens;
     }
 }
 
 TEST_F(CliLens, CornersAreDarkerAndOpaque) {
-    const Picture p = flat({"--lens", "takumar-50mm-f1.2", "--method", "dispersion=shared"});
+    const io::Picture p = flat({"--lens", "takumar-50mm-f1.2", "--method", "dispersion=shared"});
     EXPECT_LT(value_at(p, 0, 0, "G"), 0.4f);
     EXPECT_GT(value_at(p, 0, 0, "G"), 0.1f);
     EXPECT_EQ(value_at(p, 0, 0, "A"), 1.f);
@@ -108,7 +108,7 @@ TEST_F(CliLens, AlphaIsWhatTheLensKeepsBack) {
     for (const Words& words : {lens, photographic}) {
         Words clear = words;
         clear.emplace_back("--transparent");
-        const Picture sky = flat(words), under = flat(clear);
+        const io::Picture sky = flat(words), under = flat(clear);
         const float white = value_at(sky, 15, 10, "G");
         for (const V2i& at : {V2i(0, 0), V2i(4, 9), V2i(15, 10)})
             EXPECT_NEAR(value_at(under, at.x, at.y, "A"),
@@ -148,10 +148,10 @@ TEST_F(CliLens, FitsTheAngleOfView) {
         words.insert(words.end(), more.begin(), more.end());
         const Finished done = run_petzval(render_words(words, walls_file));
         EXPECT_EQ(done.exit_code, 0) << done.err;
-        return read_picture(path("out.exr"));
+        return io::read_picture(path("out.exr"));
     };
     // How many pixels of the middle rows the near wall fills: those nearer to it than to the other.
-    const auto width_px = [&](const Picture& p) {
+    const auto width_px = [&](const io::Picture& p) {
         const auto at = [&](int x) {
             double sum = 0;
             for (int y = 40; y < 56; ++y) sum += value_at(p, x, y, "R");
@@ -168,7 +168,7 @@ TEST_F(CliLens, FitsTheAngleOfView) {
                         "16",     "--focus",          "1000"};
     Words fitted = lens;
     fitted.insert(fitted.end(), {"--method", "fit=fov", "--fov", "26"});
-    const Picture p = picture(fitted);
+    const io::Picture p = picture(fitted);
     EXPECT_NEAR(width_px(p), expected, 1.5);
     EXPECT_NEAR(std::stof(metadata_of(p, "petzval:fov_deg")), 26, 1e-3);
     EXPECT_GT(width_px(picture(lens)), expected + 5);
@@ -181,7 +181,7 @@ TEST_F(CliLens, FitsTheAngleOfView) {
 // The spot of a fast lens is smallest in front of where rays near the axis meet.
 TEST_F(CliLens, FocusByTracedRaysMovesTheFilm) {
     const auto film_mm = [&](const char* by) {
-        const Picture p =
+        const io::Picture p =
             flat({"--lens", "double-gauss-100mm-f2", "--method", "focus-by=" + std::string(by)});
         return std::stof(metadata_of(p, "petzval:film_mm"));
     };
@@ -220,7 +220,7 @@ TEST_F(CliLens, DoublesAreAskedForAndAgree) {
                        "lens-precision=" + std::string(trace), "--background", "1,1,1", "--look-at",
                        "-0.4,0,0,-0.4,0,-1", "--focus", "1", "--spp", "64"});
     };
-    const Picture in_floats = picture("float"), in_doubles = picture("double");
+    const io::Picture in_floats = picture("float"), in_doubles = picture("double");
     EXPECT_NE(in_floats.pixels, in_doubles.pixels);
     double sum = 0;
     for (size_t i = 0; i < in_floats.pixels.size(); ++i)
@@ -253,7 +253,7 @@ TEST_F(CliLens, FocusIsOnWhatThePixelShows) {
                         "--focus"};
     Words seen = lens;
     seen.insert(seen.end(), {"1", "--fstop", "22", "--aov", "position", "--spp", "16"});
-    const Picture p = render(seen);
+    const io::Picture p = render(seen);
     int edge = 0;
     while (edge < 90 && std::fabs(value_at(p, edge, 0, "position.Z") + 1) > 0.01f) ++edge;
     ASSERT_GT(edge, 20);
@@ -265,7 +265,8 @@ TEST_F(CliLens, FocusIsOnWhatThePixelShows) {
     };
     const Finished wall = focused_on(edge + 2), nothing = focused_on(edge - 3);
     EXPECT_EQ(wall.exit_code, 0) << wall.err;
-    EXPECT_NEAR(std::stof(metadata_of(read_picture(path("out.exr")), "petzval:focus_m")), 1, 1e-4);
+    EXPECT_NEAR(std::stof(metadata_of(io::read_picture(path("out.exr")), "petzval:focus_m")), 1,
+                1e-4);
     EXPECT_EQ(nothing.exit_code, 2);
     EXPECT_NE(nothing.err.find("nothing to focus on under pixel"), std::string::npos);
 }
@@ -312,4 +313,4 @@ TEST_F(CliLens, StatsTellWhatBecameOfTheLanes) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 #include "io/file/csv.h"
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr const char* kTriplet = "cooke-triplet-50mm-f5";
@@ -23,9 +23,9 @@ class LensWaves : public CliTest {
         EXPECT_NE(file_bytes(path("a.svg")).find("</svg>"), std::string::npos) << analysis;
         return run;
     }
-    CsvTable table(const char* analysis, const Words& more) {
+    io::CsvTable table(const char* analysis, const Words& more) {
         EXPECT_EQ(analysed(analysis, more).err, "");
-        return read_csv(path("a.csv"));
+        return io::read_csv(path("a.csv"));
     }
     std::string refused(const char* analysis, const Words& more, const char* lens = kTriplet) {
         Words words{"lens", analysis, lens, "-o", path("a.svg")};
@@ -67,7 +67,7 @@ TEST_F(LensWaves, WavefrontHasFansMapsFiguresAndZernikes) {
         sum += row[1] * row[1];
     }
     EXPECT_NEAR(std::sqrt(sum), axis[2], 0.01 * axis[2]);
-    const CsvTable fans = read_csv(path("a.csv"));
+    const io::CsvTable fans = io::read_csv(path("a.csv"));
     EXPECT_EQ(fans.names[4], "opd_mm");
     EXPECT_GT(fans.rows.size(), 2u * 3 * 2 * 50);
     double most = 0;
@@ -78,7 +78,7 @@ TEST_F(LensWaves, WavefrontHasFansMapsFiguresAndZernikes) {
 }
 
 TEST_F(LensWaves, PointSpreadHoldsTheLight) {
-    const CsvTable psf = table("psf", {"--fstop", "11", "--field", "0", "--light", "550"});
+    const io::CsvTable psf = table("psf", {"--fstop", "11", "--field", "0", "--light", "550"});
     double light = 0;
     const double cell = psf.rows[1][1] - psf.rows[0][1];
     double peak = 0;
@@ -95,7 +95,7 @@ TEST_F(LensWaves, PointSpreadHoldsTheLight) {
 }
 
 TEST_F(LensWaves, MtfByWavesIsThatOfAnIdealLensWhenStoppedDown) {
-    const CsvTable mtf = table(
+    const io::CsvTable mtf = table(
         "mtf", {"--wave", "--fstop", "32", "--field", "0", "--light", "550", "--cycles", "60"});
     double worst = 0;
     for (const auto& row : mtf.rows) {
@@ -107,10 +107,10 @@ TEST_F(LensWaves, MtfByWavesIsThatOfAnIdealLensWhenStoppedDown) {
     }
     EXPECT_LT(worst, 0.01);
     // Weights are shares.
-    const CsvTable usual = table("mtf", {"--wave", "--field", "0"});
-    const CsvTable same =
+    const io::CsvTable usual = table("mtf", {"--wave", "--field", "0"});
+    const io::CsvTable same =
         table("mtf", {"--wave", "--field", "0", "--light", "486.1327nm:2,587.5618:2,656.2725:2"});
-    const CsvTable blue = table("mtf", {"--wave", "--field", "0", "--light", "486.1327"});
+    const io::CsvTable blue = table("mtf", {"--wave", "--field", "0", "--light", "486.1327"});
     for (size_t i = 0; i < usual.rows.size(); ++i)
         EXPECT_NEAR(usual.rows[i][2], same.rows[i][2], 1e-9);
     EXPECT_GT(std::fabs(usual.rows[20][2] - blue.rows[20][2]), 0.02);
@@ -132,14 +132,14 @@ TEST_F(LensWaves, SpotAndMtfSayWhereRaysAreTooSharp) {
 }
 
 TEST_F(LensWaves, FociOverFilmFieldAndColour) {
-    const CsvTable through = table("through-focus", {"--field", "0,14"});
+    const io::CsvTable through = table("through-focus", {"--field", "0,14"});
     EXPECT_EQ(through.rows.size(), 2u * 41);
     double least = 1e9, at = 0;
     for (const auto& row : through.rows)
         if (row[0] == 0 && row[4] < least) least = row[4], at = row[1];
     EXPECT_NEAR(at, numbers_after(analysed("through-focus", {"--field", "0"}).out, "0 ")[0],
                 (through.rows[1][1] - through.rows[0][1]) * 0.6);
-    const CsvTable waves =
+    const io::CsvTable waves =
         table("through-focus", {"--field", "0", "--wave", "--fstop", "11", "--light", "550"});
     double most = 0;
     for (const auto& row : waves.rows) most = std::max(most, row[2]);
@@ -147,23 +147,23 @@ TEST_F(LensWaves, FociOverFilmFieldAndColour) {
     EXPECT_LT(most, 2 / std::numbers::pi * (std::acos(s) - s * std::sqrt(1 - s * s)) + 0.005);
     EXPECT_GT(most, 0.7);
 
-    const CsvTable field = table("field-curvature", {});
+    const io::CsvTable field = table("field-curvature", {});
     EXPECT_EQ(field.rows.size(), 41u);
     EXPECT_NEAR(field.rows[0][1], field.rows[0][2], 1e-6);
     EXPECT_GT(std::fabs(field.rows[40][1] - field.rows[40][2]), 0.1);
 
-    const CsvTable colour = table("focal-shift", {});
+    const io::CsvTable colour = table("focal-shift", {});
     EXPECT_EQ(colour.rows.size(), 61u);
     double d = 1;
     for (const auto& row : colour.rows)
         if (row[0] == 590) d = row[1];
     EXPECT_NEAR(d, 0, 0.03);
-    const CsvTable near = table("focal-shift", {"--focus", "1m"});
+    const io::CsvTable near = table("focal-shift", {"--focus", "1m"});
     for (const auto& row : near.rows) {
         if (row[0] == 590) EXPECT_NEAR(row[1], 0, 0.03);
     }
 
-    const CsvTable lateral = table("lateral-colour", {"--fstop", "8"});
+    const io::CsvTable lateral = table("lateral-colour", {"--fstop", "8"});
     EXPECT_EQ(lateral.rows.size(), 41u);
     EXPECT_NEAR(lateral.rows[0][1], 0, 1e-9);
     EXPECT_NEAR(lateral.rows[40][3], 1.21967 * 587.5618e-6 * 8, 1e-6);
@@ -199,4 +199,4 @@ TEST_F(LensWaves, RefusesWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -7,7 +7,7 @@
 
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 class LongRenders : public CliTest {
   protected:
@@ -64,4 +64,4 @@ class LongRenders : public CliTest {
     }
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

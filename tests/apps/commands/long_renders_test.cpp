@@ -4,7 +4,7 @@
 
 #include "tests/apps/commands/long_renders.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using namespace std::chrono_literals;
@@ -169,7 +169,7 @@ TEST_F(LongRenders, LooksOn) {
                           "--log", path("log.txt"), "--progress", "percent"}));
     for (int i = 0; i < 6000 && !std::filesystem::exists(path("p.png")); ++i)
         std::this_thread::sleep_for(10ms);
-    EXPECT_EQ(read_picture(path("p.png")).width, 40) << "while it renders";
+    EXPECT_EQ(io::read_picture(path("p.png")).width, 40) << "while it renders";
     render.signal(SIGTERM);
     EXPECT_EQ(render.wait().exit_code, 130);
     const Finished done = run(
@@ -189,7 +189,7 @@ TEST_F(LongRenders, ATimeLimitWithCheckpointsEndsEvenly) {
     ASSERT_EQ(merge({"t.state"}, {"-o", path("m.exr")}).exit_code, 0);
     expect_same("t.exr", "m.exr");
     std::string samples;
-    for (const auto& [name, value] : read_picture(path("t.exr")).metadata)
+    for (const auto& [name, value] : io::read_picture(path("t.exr")).metadata)
         if (name == "petzval:samples") samples = std::get<std::string>(value);
     run({"--spp", samples.substr(2), "-o", path("w.exr")});
     expect_same("w.exr", "t.exr");
@@ -308,7 +308,7 @@ TEST_F(LongRenders, ClampTakesWhatIsBrighter) {
         Words all = {"--spp", "1", "-o", path("c.exr")};
         all.insert(all.end(), more.begin(), more.end());
         run(all);
-        const Picture picture = read_picture(path("c.exr"));
+        const io::Picture picture = io::read_picture(path("c.exr"));
         float most = 0;
         for (size_t i = 0; i < picture.pixels.size(); i += picture.channels.size())
             for (size_t c = 0; c < 3; ++c) most = std::max(most, picture.pixels[i + c]);
@@ -321,4 +321,4 @@ TEST_F(LongRenders, ClampTakesWhatIsBrighter) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

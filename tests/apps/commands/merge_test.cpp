@@ -2,7 +2,7 @@
 // Renders that are divided and merged: the files are those of one run.
 #include "tests/apps/commands/long_renders.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class Merging : public LongRenders {};
@@ -147,4 +147,4 @@ TEST_F(Merging, InfinityIsKept) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using testing::AllOf;
@@ -67,4 +67,4 @@ TEST_F(CliModules, AModuleThatCannotBeLoadedStopsARenderBeforeItBegins) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,7 +4,7 @@
 #include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // A right-to-left override, an escape sequence of one character (CSI), no width, a new line.
@@ -16,7 +16,7 @@ class CliNames : public CliTest {
     // Whether no line has anything hidden in it.
     static void expect_visible(const std::string& text) {
         std::istringstream lines(text);
-        for (std::string line; std::getline(lines, line);) EXPECT_EQ(line, visible(line));
+        for (std::string line; std::getline(lines, line);) EXPECT_EQ(line, io::visible(line));
     }
     Finished run(const Words& words) {
         Finished done = run_petzval(words);
@@ -79,7 +79,7 @@ TEST_F(CliNames, NoticesAndMetadataShowThemEscaped) {
     EXPECT_EQ(text.exit_code, 0) << text.err;
     EXPECT_NE(text.err.find("material \"" + kShown + "\" is a measured metal"), std::string::npos)
         << text.err;
-    EXPECT_EQ(metadata_of(read_picture(path("a.exr")), "petzval:camera"), kShown);
+    EXPECT_EQ(metadata_of(io::read_picture(path("a.exr")), "petzval:camera"), kShown);
     const Finished as_json =
         run(render_words({"-o", path("a.exr"), "--progress", "json", "--camera", kEvil}, scene));
     EXPECT_EQ(as_json.exit_code, 0) << as_json.err;
@@ -119,4 +119,4 @@ TEST_F(CliNames, LensFilesToo) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using testing::HasSubstr;
@@ -22,7 +22,7 @@ class CliNoise : public CliTest {
         words.insert(words.end(), more.begin(), more.end());
         return run_petzval(words);
     }
-    [[nodiscard]] static float number(const Picture& picture, const std::string& name) {
+    [[nodiscard]] static float number(const io::Picture& picture, const std::string& name) {
         for (const auto& [other, value] : picture.metadata)
             if (const float* number = std::get_if<float>(&value); number && other == name)
                 return *number;
@@ -34,11 +34,11 @@ TEST_F(CliNoise, IsReachedAndSaid) {
     const Finished run = noisy({"--noise", "10%", "--stats", path("stats.json")});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_THAT(run.err, HasSubstr("noise: "));
-    const Picture picture = read_picture(path("noise.exr"));
+    const io::Picture picture = io::read_picture(path("noise.exr"));
     EXPECT_GT(number(picture, "petzval:noise"), 0);
     EXPECT_LE(number(picture, "petzval:noiseOfWorstCell"), 0.1f);
     for (const char* channel : {"samples.N", "stderr.R", "stderr.G", "stderr.B"})
-        EXPECT_GE(channel_index(picture, channel), 0) << channel;
+        EXPECT_GE(io::channel_index(picture, channel), 0) << channel;
     std::ifstream file(path("stats.json"));
     EXPECT_EQ(nlohmann::json::parse(file)["noise"]["cells_left"], 0);
     const Finished said = run_petzval({"image", "noise", path("noise.exr"), "--regions", "2"});
@@ -58,7 +58,8 @@ TEST_F(CliNoise, ABoundHasAnExitCodeOfItsOwn) {
 TEST_F(CliNoise, IsPartOfACropOfWholeCells) {
     ASSERT_EQ(noisy({"--noise", "10%"}).exit_code, 0);
     ASSERT_EQ(noisy({"--noise", "10%", "--crop", "16,0,32,16"}, "crop.exr").exit_code, 0);
-    const Picture whole = read_picture(path("noise.exr")), crop = read_picture(path("crop.exr"));
+    const io::Picture whole = io::read_picture(path("noise.exr")),
+                      crop = io::read_picture(path("crop.exr"));
     const size_t channels = whole.channels.size(), row = 32 * channels;
     ASSERT_EQ(crop.pixels.size(), 16 * row);
     for (size_t y = 0; y < 16; ++y)
@@ -112,4 +113,4 @@ TEST_F(CliNoise, GoesOnToALowerOne) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -7,7 +7,7 @@
 #include "tests/support/open_watch.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,7 +59,7 @@ TEST_F(CliOutputs, OneThatFailsDoesNotLoseTheOthers) {
                                 "elsewhere either");
     }
     EXPECT_EQ(listing(), (std::set<std::string>{"b.png", "s.json", "studio.glb"}));
-    EXPECT_EQ(read_picture(path("b.png")).width, 64);
+    EXPECT_EQ(io::read_picture(path("b.png")).width, 64);
     const json stats = json::parse(file_bytes(path("s.json")));
     ASSERT_EQ(stats.at("outputs").size(), 3u);
     EXPECT_EQ(stats.at("outputs")[0].at("file"), path("a.exr"));
@@ -77,7 +77,7 @@ TEST_F(CliOutputs, StatisticsThatFailDoNotLoseThePicture) {
               "petzval: error: /dev/full: cannot be written: No space left on device; a copy is "
               "in " +
                   fs::canonical(folder_.path).string() + "/full.rescue\n");
-    EXPECT_EQ(read_picture(path("a.exr")).width, 16);
+    EXPECT_EQ(io::read_picture(path("a.exr")).width, 16);
     EXPECT_EQ(json::parse(file_bytes(path("full.rescue"))).at("pixel_samples"), 16 * 16 * 4);
 }
 
@@ -95,9 +95,9 @@ TEST_F(CliOutputs, AFolderThatGoesAwayWhileRendering) {
     render.signal(SIGINT);
     const Finished run = render.wait();
     EXPECT_EQ(run.exit_code, 3) << run.err;
-    EXPECT_EQ(read_picture(path("here/a.partial.rescue.exr")).width, 16);
-    EXPECT_EQ(read_picture(path("here/b.partial.rescue.exr")).width, 16);
-    EXPECT_EQ(read_picture(path("c.partial.exr")).width, 16);
+    EXPECT_EQ(io::read_picture(path("here/a.partial.rescue.exr")).width, 16);
+    EXPECT_EQ(io::read_picture(path("here/b.partial.rescue.exr")).width, 16);
+    EXPECT_EQ(io::read_picture(path("c.partial.exr")).width, 16);
     EXPECT_EQ(json::parse(file_bytes(path("here/s.rescue.json"))).at("stopped_by"), "SIGINT");
     EXPECT_NE(run.err.find("a copy is in " + fs::canonical(path("here")).string() +
                            "/a.partial.rescue.exr"),
@@ -107,12 +107,12 @@ TEST_F(CliOutputs, AFolderThatGoesAwayWhileRendering) {
 }
 
 TEST_F(CliOutputs, NoneIsAnInput) {
-    Picture sky;
+    io::Picture sky;
     sky.width = sky.full_width = 4;
     sky.height = sky.full_height = 2;
     sky.channels = {"R", "G", "B"};
     sky.pixels.assign(24, 1.f);
-    write_exr(path("sky.exr"), sky);
+    io::write_exr(path("sky.exr"), sky);
     const std::string mask = path("iris.png"), lens = path("lens.json"), white = path("w.csv");
     const auto png = tiny_png(2, 2, std::vector<uint8_t>(16, 255));
     save_bytes(mask, png);
@@ -240,4 +240,4 @@ TEST_F(CliOutputs, OfALensAPlotThatFailsDoesNotLoseTheTable) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 #include "tests/support/cli.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using nlohmann::json;
@@ -134,4 +134,4 @@ TEST_F(CliProgressJson, AStopIsInItToo) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 #include "tests/support/cli.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class ReadingOptions : public CliTest {
@@ -36,16 +36,16 @@ TEST_F(ReadingOptions, MaxMemoryHoldsForAllPicturesOfAScene) {
     EXPECT_NE(line.find("--max-memory"), line.npos) << line;
 
     // The environment comes on top of the texture, and an iris on top of both.
-    Picture sky{{.width = 64,
-                 .height = 32,
-                 .full_width = 64,
-                 .full_height = 32,
-                 .channels = {"R", "G", "B"},
-                 .metadata = {}},
-                std::vector<float>(64 * 32 * 3, 1.f)};
-    write_exr(path("sky.exr"), sky);
-    Picture iris = sky;
-    write_8bit(path("iris.png"), iris);
+    io::Picture sky{{.width = 64,
+                     .height = 32,
+                     .full_width = 64,
+                     .full_height = 32,
+                     .channels = {"R", "G", "B"},
+                     .metadata = {}},
+                    std::vector<float>(64 * 32 * 3, 1.f)};
+    io::write_exr(path("sky.exr"), sky);
+    io::Picture iris = sky;
+    io::write_8bit(path("iris.png"), iris);
     const Words all = {"render",     scene,
                        "--size",     "8x8",
                        "--spp",      "1",
@@ -67,14 +67,14 @@ TEST_F(ReadingOptions, MaxMemoryHoldsForAllPicturesOfAScene) {
 }
 
 TEST_F(ReadingOptions, MaxMemoryHoldsForPicturesByThemselves) {
-    const Picture picture{{.width = 64,
-                           .height = 32,
-                           .full_width = 64,
-                           .full_height = 32,
-                           .channels = {"R", "G", "B"},
-                           .metadata = {}},
-                          std::vector<float>(64 * 32 * 3, 1.f)};
-    write_exr(path("a.exr"), picture);
+    const io::Picture picture{{.width = 64,
+                               .height = 32,
+                               .full_width = 64,
+                               .full_height = 32,
+                               .channels = {"R", "G", "B"},
+                               .metadata = {}},
+                              std::vector<float>(64 * 32 * 3, 1.f)};
+    io::write_exr(path("a.exr"), picture);
     for (const Words& words : {Words{"image", "diff", path("a.exr"), path("a.exr")},
                                Words{"image", "view", path("a.exr"), "-o", path("a.png")},
                                Words{"image", "spectrum", path("a.exr"), "0,0"}}) {
@@ -194,8 +194,8 @@ TEST_F(ReadingOptions, AVariantStandsInThePictureItsMetadataAndThePlan) {
     file.json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
         {{"material", glow}, {"variants", {0}}}};
     scene_ = file.save_glb(folder_.path / "variants.glb").string();
-    const Picture plain = render({});
-    const Picture lit = render({"--variant", "lit one"});
+    const io::Picture plain = render({});
+    const io::Picture lit = render({"--variant", "lit one"});
     EXPECT_EQ(metadata_of(plain, "petzval:variant"), "(none)");
     EXPECT_EQ(metadata_of(lit, "petzval:variant"), "lit one");
     const size_t middle = (8 * 16 + 8) * lit.channels.size();
@@ -229,4 +229,4 @@ TEST_F(ReadingOptions, ThreadsFollowTheAffinityMask) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

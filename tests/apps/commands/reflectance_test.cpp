@@ -6,7 +6,7 @@
 #include "core/spectrum/metal.h"
 #include "tests/support/cli_spectral.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Patches of 10 x 10 pixels in the order of the chart.
@@ -18,7 +18,7 @@ class ReflectanceCli : public CliSpectral {
     /// A chart of diffuse patches before an even sky; more: what each material has beside.
     static TinyGltf chart(const json& more = json::object()) {
         TinyGltf file;
-        const std::vector<std::string> names = reflectance_names();
+        const std::vector<std::string> names = io::reflectance_names();
         for (int i = 0; i < kColumns * kRows; ++i) {
             const auto x = float(i % kColumns), y = float(-i / kColumns);
             add_wall(file, x, y - 1, x + 1, y, -1, {1, 1, 1});
@@ -37,7 +37,7 @@ class ReflectanceCli : public CliSpectral {
     /// Means of the patches, two pixels off their edges: the pixel filter reaches so far.
     std::vector<V3d> patches(Words words) {
         words.insert(words.end(), {"--size", kSize, "--background", "1,1,1"});
-        const Picture p = render(words);
+        const io::Picture p = render(words);
         std::vector<V3d> means;
         for (int i = 0; i < kColumns * kRows; ++i) {
             V3d sum(0.);
@@ -52,13 +52,13 @@ class ReflectanceCli : public CliSpectral {
     }
     /// Linear sRGB of each curve under 1 nit of an illuminant: integrals at 1 nm.
     static std::vector<V3d> integrals(const char* illuminant) {
-        const auto bar = standard_observer();
-        const SpectrumTable light = find_illuminant(illuminant);
-        const V3d d65 = respond(bar, find_illuminant("d65"));
+        const auto bar = io::standard_observer();
+        const SpectrumTable light = io::find_illuminant(illuminant);
+        const V3d d65 = respond(bar, io::find_illuminant("d65"));
         const Matrix3 to_srgb = srgb_to_xyz(d65 / d65.y).inverse();
         const double nit = respond(bar, light).y;
         std::vector<V3d> all;
-        for (const SpectrumTable& curve : training_reflectances()) {
+        for (const SpectrumTable& curve : io::training_reflectances()) {
             V3d xyz(0.);
             for (int nm = kFirst_nm; nm <= kLast_nm; ++nm)
                 for (int k = 0; k < 3; ++k)
@@ -70,7 +70,7 @@ class ReflectanceCli : public CliSpectral {
     static void expect_near(const std::vector<V3d>& found, const std::vector<V3d>& expected,
                             double tolerance) {
         ASSERT_EQ(found.size(), expected.size());
-        const std::vector<std::string> names = reflectance_names();
+        const std::vector<std::string> names = io::reflectance_names();
         for (size_t i = 0; i < found.size(); ++i)
             for (int k = 0; k < 3; ++k)
                 EXPECT_NEAR(found[i][k], expected[i][k], tolerance) << names[i] << ' ' << "RGB"[k];
@@ -105,14 +105,14 @@ TEST_F(ReflectanceCli, AFileIsReadAndNotOverwrittenAndAPartOfWhatIsRendered) {
     use(big_wall(extras("reflectance", "Paint 1%.csv")));
     text_file("Paint 1%.csv", "\xEF\xBB\xBFnm,r\r\n700,0.2\r\n400,0.8\r\n");  // red first
     const Words words = {"--background", "1,1,1", "--spp", "64", "--bins", "400:700:100"};
-    const Picture p = render(words);
+    const io::Picture p = render(words);
     EXPECT_EQ(said({"--background", "1,1,1"}),
               "petzval: spectral: wavelengths, as a material without a name has a measured "
               "reflectance (Paint 1%.csv)\n");
     EXPECT_NE(run_petzval({"info", scene_}).out.find("measured reflectance Paint 1%.csv"),
               std::string::npos);
-    const SpectrumTable light = find_illuminant("d65");
-    const double nit = 683.002 * integral_of_product(standard_observer()[1], light);
+    const SpectrumTable light = io::find_illuminant("d65");
+    const double nit = 683.002 * integral_of_product(io::standard_observer()[1], light);
     for (const auto& [bin, first_nm] : {std::pair{"S0.450,0nm", 400}, {"S0.650,0nm", 600}}) {
         double mean = 0;
         for (int nm = first_nm; nm < first_nm + 100; ++nm)
@@ -122,7 +122,7 @@ TEST_F(ReflectanceCli, AFileIsReadAndNotOverwrittenAndAPartOfWhatIsRendered) {
     const std::string hash = metadata_of(p, "petzval:sceneHash");
     EXPECT_NE(hash, "(none)");
     text_file("Paint 1%.csv", "nm,r\n400,0.5\n");
-    const Picture grey = render({"--background", "1,1,1", "--spp", "64"});
+    const io::Picture grey = render({"--background", "1,1,1", "--spp", "64"});
     for (const char* c : {"R", "G", "B"}) EXPECT_NEAR(mean_of(grey, c), 0.5, 0.003) << c;
     EXPECT_NE(metadata_of(grey, "petzval:sceneHash"), hash);
     use(big_wall(extras("reflectance", "paint.png")));
@@ -155,4 +155,4 @@ TEST_F(ReflectanceCli, AFileLiesInTheFolderOfTheScene) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,7 +4,7 @@
 #include "io/image/picture_files.h"
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using nlohmann::json;
@@ -13,21 +13,21 @@ class Cli : public CliTest {
   protected:
     /// Largest difference of the colours of two renders.
     double difference(const Words& a, const Words& b) {
-        return compare(render(a, "a.exr"), render(b, "b.exr")).front().max_abs;
+        return io::compare(render(a, "a.exr"), render(b, "b.exr")).front().max_abs;
     }
     /// An environment that is red where z < 0 (ahead of the cameras) and blue behind.
     std::string red_and_blue() {
-        Picture sky;
+        io::Picture sky;
         sky.width = sky.full_width = 8;
         sky.height = sky.full_height = 4;
         sky.channels = {"R", "G", "B"};
         for (int i = 0; i < 32; ++i)
             for (const float v : {i % 8 < 4 ? 1.f : 0.f, 0.f, i % 8 < 4 ? 0.f : 1.f})
                 sky.pixels.push_back(v);
-        write_exr(path("sky.exr"), sky);
+        io::write_exr(path("sky.exr"), sky);
         return path("sky.exr");
     }
-    static V3f corner(const Picture& p) {
+    static V3f corner(const io::Picture& p) {
         return {value_at(p, 0, 0, "R"), value_at(p, 0, 0, "G"), value_at(p, 0, 0, "B")};
     }
 };
@@ -37,11 +37,11 @@ TEST_F(Cli, FrameAndSamples) {
     for (const Words& light : {Words{}, Words{"--env", red_and_blue()}}) {
         Words words = {"--size", "24x12", "--spp", "3"};
         words.insert(words.end(), light.begin(), light.end());
-        const Picture whole = render(words, "whole.exr");
+        const io::Picture whole = render(words, "whole.exr");
         EXPECT_EQ(V2i(whole.width, whole.height), V2i(24, 12));
         EXPECT_EQ(metadata_of(whole, "petzval:samples"), "0:3");
         words.insert(words.end(), {"--crop", "10,3,9,7"});
-        const Picture part = render(words);
+        const io::Picture part = render(words);
         ASSERT_EQ(V2i(part.width, part.height), V2i(9, 7));
         EXPECT_EQ(V2i(part.x, part.y), V2i(10, 3));
         EXPECT_EQ(V2i(part.full_width, part.full_height), V2i(24, 12));
@@ -51,9 +51,9 @@ TEST_F(Cli, FrameAndSamples) {
                     ASSERT_EQ(value_at(part, x, y, c), value_at(whole, x + 10, y + 3, c));
     }
 
-    const Picture timed = render({"--time-limit", "0.1s"});
+    const io::Picture timed = render({"--time-limit", "0.1s"});
     EXPECT_GE(std::stoi(metadata_of(timed, "petzval:samples").substr(2)), 1) << "it ends at all";
-    const Picture both = render({"--time-limit", "24h", "--spp", "2"});
+    const io::Picture both = render({"--time-limit", "24h", "--spp", "2"});
     EXPECT_EQ(metadata_of(both, "petzval:samples"), "0:2");
 }
 
@@ -83,12 +83,12 @@ TEST_F(Cli, Cameras) {
     const Words sharp = {"--transparent", "--method", "filter=box", "--spp", "64"};
     Words plan = sharp;
     plan.insert(plan.end(), {"--camera", "plan"});
-    const Picture seen = render(plan);
+    const io::Picture seen = render(plan);
     EXPECT_NEAR(mean_of(seen, "A"), 4. / 9, 0.01);
 }
 
 TEST_F(Cli, Lens) {
-    const Picture p = render({"--fstop", "2", "--focal-length", "50", "--sensor", "40x20"});
+    const io::Picture p = render({"--fstop", "2", "--focal-length", "50", "--sensor", "40x20"});
     EXPECT_EQ(metadata_of(p, "petzval:sensorWidth_mm"), "20.000000");
     EXPECT_EQ(metadata_of(p, "petzval:sensorHeight_mm"), "20.000000");
     EXPECT_EQ(metadata_of(p, "petzval:focalLength_mm"), "50.000000");
@@ -100,7 +100,7 @@ TEST_F(Cli, Lens) {
               "22.619865");  // 2 atan(10 / 50)
 
     const auto focus_of = [&](const std::string& focus) {
-        const Picture q = render({"--method", "lens-radius=0.1", "--focus", focus});
+        const io::Picture q = render({"--method", "lens-radius=0.1", "--focus", focus});
         EXPECT_EQ(metadata_of(q, "petzval:lensRadius_m"), "0.100000");
         return std::stod(metadata_of(q, "petzval:focus_m"));
     };
@@ -110,8 +110,9 @@ TEST_F(Cli, Lens) {
 
     // Out of focus the wall's edge is spread over more pixels.
     const auto mixed = [&](const std::string& focus) {
-        const Picture q = render({"--method", "lens-radius=0.1", "--focus", focus, "--transparent",
-                                  "--method", "filter=box", "--size", "32x32", "--spp", "32"});
+        const io::Picture q =
+            render({"--method", "lens-radius=0.1", "--focus", focus, "--transparent", "--method",
+                    "filter=box", "--size", "32x32", "--spp", "32"});
         int count = 0;
         for (int i = 0; i < 32 * 32; ++i) {
             const float alpha = value_at(q, i % 32, i / 32, "A");
@@ -127,14 +128,14 @@ TEST_F(Cli, EnvironmentAndBackground) {
     EXPECT_EQ(corner(render({"--env", sky})), V3f(1, 0, 0));
     EXPECT_EQ(corner(render({"--env", sky, "--env-rotate", "180"})), V3f(0, 0, 1));
     EXPECT_EQ(corner(render({"--env", sky, "--method", "env-strength=3"})), V3f(3, 0, 0));
-    const Picture painted = render({"--env", sky, "--background", "0.25,0.5,2"});
+    const io::Picture painted = render({"--env", sky, "--background", "0.25,0.5,2"});
     EXPECT_EQ(corner(painted), V3f(0.25f, 0.5f, 2));
     // The wall faces the blue half: lit by the environment, not by what is painted behind.
     EXPECT_GT(value_at(painted, 8, 8, "B"), 0.f);
-    const Picture plain = render({"--background", "0.25,0.5,2"});
+    const io::Picture plain = render({"--background", "0.25,0.5,2"});
     EXPECT_EQ(corner(plain), V3f(0.25f, 0.5f, 2));
     EXPECT_EQ(value_at(plain, 0, 0, "A"), 1.f);
-    const Picture clear = render({"--background", "0.25,0.5,2", "--transparent"});
+    const io::Picture clear = render({"--background", "0.25,0.5,2", "--transparent"});
     EXPECT_EQ(corner(clear), V3f(0, 0, 0));
     EXPECT_EQ(value_at(clear, 0, 0, "A"), 0.f);
     EXPECT_EQ(value_at(clear, 8, 8, "A"), 1.f);
@@ -148,7 +149,7 @@ TEST_F(Cli, DepthFilterSamplerLightChoiceTraversal) {
     std::set<std::string> pictures;
     const auto add = [&](const Words& words, const std::string& name, const std::string& value) {
         pictures.insert(render_bytes(words));
-        EXPECT_EQ(metadata_of(read_picture(path("out.exr")), "petzval:" + name), value);
+        EXPECT_EQ(metadata_of(io::read_picture(path("out.exr")), "petzval:" + name), value);
     };
     add({}, "filterRadius_px", "1.500000");
     add({"--method", "filter=gauss"}, "filter", "gauss");
@@ -169,7 +170,7 @@ TEST_F(Cli, DisplayPictures) {
     ASSERT_FALSE(render_bytes({"-o", path("a.png"), "-o", path("a.jpg"), "--exposure", "-1",
                                "--view", "ACES"})
                      .empty());
-    EXPECT_EQ(read_picture(path("a.jpg")).width, 16);
+    EXPECT_EQ(io::read_picture(path("a.jpg")).width, 16);
     const auto view = [&](const std::string& exposure, const std::string& name) {
         const Finished run = run_petzval({"image", "view", path("out.exr"), "-o", path("b.png"),
                                           "--exposure", exposure, "--view", name});
@@ -184,8 +185,8 @@ TEST_F(Cli, DisplayPictures) {
 }
 
 TEST_F(Cli, Layers) {
-    const Picture p = render({"--size", "17x17", "--method", "filter=box", "--spp", "16", "--aov",
-                              "albedo,normal,depth,position,uv,emission,cost"});
+    const io::Picture p = render({"--size", "17x17", "--method", "filter=box", "--spp", "16",
+                                  "--aov", "albedo,normal,depth,position,uv,emission,cost"});
     EXPECT_EQ(p.channels.size(), 4u + 3 + 3 + 1 + 3 + 2 + 3 + 1);
     const auto at = [&](const std::string& channel) { return value_at(p, 8, 8, channel); };
     EXPECT_NEAR(at("albedo.R"), 0.2, 1e-3);
@@ -322,15 +323,15 @@ TEST_F(Cli, AnEmptySceneIsItsBackground) {
         {"-o", path("out.exr"), "--background", "1,2,3", "--progress", "none"}, empty));
     EXPECT_EQ(run.exit_code, 0);
     EXPECT_NE(run.err.find("petzval: warning: the scene is empty"), std::string::npos) << run.err;
-    EXPECT_EQ(corner(read_picture(path("out.exr"))), V3f(1, 2, 3));
+    EXPECT_EQ(corner(io::read_picture(path("out.exr"))), V3f(1, 2, 3));
 }
 
 TEST_F(Cli, NamesWithSpacesBeforeTheScene) {
     const Finished run = run_petzval({"render", "-o", path("a b.exr"), "--output", path("[c].png"),
                                       scene_, "--size", "4x4", "--spp", "1", "--quiet"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(read_picture(path("a b.exr")).width, 4);
-    EXPECT_EQ(read_picture(path("[c].png")).width, 4);
+    EXPECT_EQ(io::read_picture(path("a b.exr")).width, 4);
+    EXPECT_EQ(io::read_picture(path("[c].png")).width, 4);
 }
 
 TEST_F(Cli, InfoVersionAndHelp) {
@@ -362,8 +363,8 @@ TEST_F(Cli, TheBuiltInScene) {
         {"render", scene, "-o", path("out.exr"), "--size", "16x9", "--spp", "1", "--quiet"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run.err, "");
-    EXPECT_GT(mean_of(read_picture(path("out.exr")), "G"), 0);
+    EXPECT_GT(mean_of(io::read_picture(path("out.exr")), "G"), 0);
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -2,7 +2,7 @@
 // A scene's own sky, exposure and view, which the command line goes before; Blender's lamps.
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using nlohmann::json;
@@ -11,14 +11,14 @@ class SceneExtrasCli : public CliTest {
   protected:
     /// Environment that is red where z < 0 and blue behind.
     void write_sky(const std::string& name) {
-        Picture sky;
+        io::Picture sky;
         sky.width = sky.full_width = 8;
         sky.height = sky.full_height = 4;
         sky.channels = {"R", "G", "B"};
         for (int i = 0; i < 32; ++i)
             for (const float v : {i % 8 < 4 ? 1.f : 0.f, 0.f, i % 8 < 4 ? 0.f : 1.f})
                 sky.pixels.push_back(v);
-        write_exr(path(name), sky);
+        io::write_exr(path(name), sky);
     }
     void save(json ours) {
         TinyGltf file = studio();
@@ -32,7 +32,7 @@ class SceneExtrasCli : public CliTest {
         EXPECT_EQ(run.exit_code, 0) << run.err;
         return run.err;
     }
-    static V3f corner(const Picture& p) {
+    static V3f corner(const io::Picture& p) {
         return {value_at(p, 0, 0, "R"), value_at(p, 0, 0, "G"), value_at(p, 0, 0, "B")};
     }
 };
@@ -40,7 +40,7 @@ class SceneExtrasCli : public CliTest {
 TEST_F(SceneExtrasCli, TheSkyIsThatOfTheScene) {
     write_sky("sky.exr");
     save({{"sky", "sky.exr"}, {"sky_rotation_deg", 180}});
-    const Picture shown = render({});
+    const io::Picture shown = render({});
     EXPECT_EQ(corner(shown), V3f(0, 0, 1));
     EXPECT_EQ(metadata_of(shown, "petzval:environmentRotate_deg"), "180");
     EXPECT_NE(metadata_of(shown, "petzval:environment").find("sky.exr"), std::string::npos);
@@ -110,4 +110,4 @@ TEST_F(SceneExtrasCli, InfoTellsWhatIsProbablyLost) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -5,7 +5,7 @@
 
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class Sequences : public CliTest {
@@ -76,8 +76,8 @@ TEST_F(Sequences, ATurntableIsAnOrbitForEachView) {
     const Finished table = run(walls_, {"--turntable", "4", "-o", path("t_#.exr")});
     for (int i = 0; i < 4; ++i) {
         run(walls_, {"--orbit", std::to_string(90 * i), "-o", path("one.exr")});
-        const Picture alone = read_picture(path("one.exr")),
-                      view = read_picture(path("t_" + std::to_string(i + 1) + ".exr"));
+        const io::Picture alone = io::read_picture(path("one.exr")),
+                          view = io::read_picture(path("t_" + std::to_string(i + 1) + ".exr"));
         EXPECT_EQ(alone.pixels, view.pixels) << i;
     }
 }
@@ -90,8 +90,8 @@ TEST_F(Sequences, ATurntableCutsNothingOff) {
     const std::string scene = bar.save_glb(folder_.path / "bar.glb").string();
     run(scene, {"--turntable", "7", "-o", path("b_#.exr"), "--aov", "depth", "--size", "48x32"});
     for (int i = 1; i <= 7; ++i) {
-        const Picture view = read_picture(path("b_" + std::to_string(i) + ".exr"));
-        const int depth = channel_index(view, "depth.Z");
+        const io::Picture view = io::read_picture(path("b_" + std::to_string(i) + ".exr"));
+        const int depth = io::channel_index(view, "depth.Z");
         ASSERT_GE(depth, 0);
         int inside = 0;
         for (int y = 0; y < 32; ++y)
@@ -110,7 +110,7 @@ TEST_F(Sequences, ATurntableCutsNothingOff) {
 TEST_F(Sequences, AnOrbitTurnsCounterClockwiseFromAbove) {
     run(walls_, {"--look-at", "0,0,3,0,0,-1", "--orbit", "90", "-o", path("o.exr")});
     std::string eye;
-    for (const auto& [name, value] : read_picture(path("o.exr")).metadata)
+    for (const auto& [name, value] : io::read_picture(path("o.exr")).metadata)
         if (name == "petzval:cameraEye_m") eye = std::get<std::string>(value);
     float x = 0, y = 0, z = 0;
     ASSERT_EQ(sscanf(eye.c_str(), "%f,%f,%f", &x, &y, &z), 3) << eye;
@@ -119,7 +119,7 @@ TEST_F(Sequences, AnOrbitTurnsCounterClockwiseFromAbove) {
     EXPECT_NEAR(z, -1, 1e-5f);
     run(walls_, {"--look-at", "0,0,3,0,0,-1", "--orbit", "90", "--method", "orbit-about=1,7,3",
                  "-o", path("o.exr")});
-    for (const auto& [name, value] : read_picture(path("o.exr")).metadata)
+    for (const auto& [name, value] : io::read_picture(path("o.exr")).metadata)
         if (name == "petzval:cameraEye_m") eye = std::get<std::string>(value);
     ASSERT_EQ(sscanf(eye.c_str(), "%f,%f,%f", &x, &y, &z), 3) << eye;
     EXPECT_NEAR(x, 1, 1e-5f);
@@ -145,7 +145,7 @@ TEST_F(Sequences, WhatIsThereIsNotRenderedAgain) {
     png_bytes.resize(png_bytes.size() * 3 / 4);  // its head says that it is the same
     std::ofstream(path("s_2.png"), std::ios::binary) << png_bytes;
     EXPECT_EQ(run(walls_, asked).err.find("s_2.png is there already"), std::string::npos);
-    EXPECT_EQ(read_picture(path("s_2.png")).width, 24);
+    EXPECT_EQ(io::read_picture(path("s_2.png")).width, 24);
 
     // What they follow from has changed: none is taken for the same.
     const auto renders = [&](const std::string& scene, const Words& more) {
@@ -230,9 +230,9 @@ TEST_F(Sequences, OneThatFailsDoesNotEndTheOthers) {
         std::string::npos)
         << some.err;
     EXPECT_NE(some.err.find("1 of 3 pictures failed: fov 40"), std::string::npos) << some.err;
-    EXPECT_EQ(read_picture(path("s_1.png")).width, 24);
-    EXPECT_EQ(read_picture(path("s_3.png")).width, 24);
-    EXPECT_GT(read_picture(path("sheet.png")).width, 24);
+    EXPECT_EQ(io::read_picture(path("s_1.png")).width, 24);
+    EXPECT_EQ(io::read_picture(path("s_3.png")).width, 24);
+    EXPECT_GT(io::read_picture(path("sheet.png")).width, 24);
     const Finished cameras = run(scene_, {"--sweep", "camera=wide,none", "-o", path("c_#.png")}, 2);
     EXPECT_TRUE(std::filesystem::exists(path("c_1.png")));
 }
@@ -242,7 +242,7 @@ TEST_F(Sequences, ASheetShowsAllInOrder) {
                  "--look-at", "0,0,1,0,0,9", "--size", "40x40", "--method", "env-strength=0"});
     EXPECT_EQ(listing(), (std::set<std::string>{"sheet.png", "studio.glb", "walls.glb"}))
         << "no other picture was asked for";
-    const Picture sheet = read_picture(path("sheet.png"));
+    const io::Picture sheet = io::read_picture(path("sheet.png"));
     // Where each colour lies: red before green before blue, by rows.
     std::array<int, 3> first{-1, -1, -1}, count{};
     for (int y = 0; y < sheet.height; ++y)
@@ -294,4 +294,4 @@ TEST_F(Sequences, WhatMakesNoSequenceIsRefused) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -14,7 +14,7 @@
 #include "tests/support/cli.h"
 #include "tests/support/open_watch.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliSignals : public CliTest, public ::testing::WithParamInterface<int> {
@@ -78,7 +78,7 @@ TEST_P(CliSignals, StopARenderAndKeepWhatThereIs) {
     EXPECT_NE(run.err.find("petzval resume " + path("out.state") + " goes on"), std::string::npos);
     EXPECT_EQ(listing(), (std::set<std::string>{"out.exr", "out.png", "out.partial.exr",
                                                 "out.state", "s.json", "studio.glb"}));
-    const Picture partial = read_picture(path("out.partial.exr"));
+    const io::Picture partial = io::read_picture(path("out.partial.exr"));
     EXPECT_EQ(partial.width, 16);
     EXPECT_GT(value_at(partial, 8, 8, "B"), 0.f);
     EXPECT_GT(mean_of(partial, "A"), 0.99);
@@ -176,10 +176,10 @@ TEST_F(CliSignalPairs, AReaderThatHasGoneStopsNothing) {
     EXPECT_EQ(
         exit_code_before_true(render_words({"-o", path("out.exr"), "--progress", "lines"}, scene_)),
         "0\n");
-    EXPECT_EQ(read_picture(path("out.exr")).width, 16);
+    EXPECT_EQ(io::read_picture(path("out.exr")).width, 16);
     EXPECT_EQ(exit_code_before_true({"lens", "list"}), "0\n");
     EXPECT_EQ(exit_code_before_true({"image", "diff", path("none.exr"), path("none.exr")}), "1\n");
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -5,7 +5,7 @@
 
 #include "tests/support/cli_spectral.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliSpectralErrors : public CliSpectral {};
@@ -97,4 +97,4 @@ TEST_F(CliSpectralErrors, ASpectralFileAgainstAnRgbOne) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

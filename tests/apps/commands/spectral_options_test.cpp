@@ -13,7 +13,7 @@
 #include "tests/support/cli_spectral.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// What a plain run says where there is nothing but the decision.
@@ -62,7 +62,7 @@ TEST_F(CliSpectral, SaysWhatItDecidesAndWhy) {
         const Finished run = runs[i].wait();
         EXPECT_EQ(run.exit_code, 0);
         EXPECT_NE(run.err.find("petzval: " + cases[i].expected), std::string::npos) << run.err;
-        const Picture p = read_picture(path(std::to_string(i) + ".exr"));
+        const io::Picture p = io::read_picture(path(std::to_string(i) + ".exr"));
         const bool spectral = cases[i].expected.starts_with(wavelengths);
         EXPECT_EQ(metadata_of(p, "petzval:spectral"), spectral ? "wavelengths" : "rgb") << i;
     }
@@ -86,7 +86,7 @@ TEST_F(CliSpectral, LightsAndResponsesAreReasonsToo) {
 
 TEST_F(CliSpectral, AnEmitterOfOneReadsBackOne) {
     use(lamp());
-    const Picture rgb = render({"--spectral", "rgb"});
+    const io::Picture rgb = render({"--spectral", "rgb"});
     for (const char* c : {"R", "G", "B"}) EXPECT_NEAR(mean_of(rgb, c), 1, 1e-6) << c;
     const std::string eye = mixed_eye();
     const std::string uneven =
@@ -102,12 +102,12 @@ TEST_F(CliSpectral, AnEmitterOfOneReadsBackOne) {
                                                  {"--response", eye},
                                                  with(balanced, {"a", "--response", eye}),
                                                  {"--bins", "400:700:20"}}) {
-        const Picture p = render(with(words, {"--spp", "256"}));
+        const io::Picture p = render(with(words, {"--spp", "256"}));
         for (const char* c : {"R", "G", "B"})
             EXPECT_NEAR(mean_of(p, c), 1, 0.005) << c << " with " << words.back();
     }
     // Without white balance it is warm, and still of 1 nit.
-    const Picture warm = render({"--illuminant", "a", "--spp", "256"});
+    const io::Picture warm = render({"--illuminant", "a", "--spp", "256"});
     const Rgb mean(float(mean_of(warm, "R")), float(mean_of(warm, "G")), float(mean_of(warm, "B")));
     EXPECT_GT(mean[0], 1.5f);
     EXPECT_LT(mean[2], 0.5f);
@@ -122,7 +122,7 @@ double band_mean(const SpectrumTable& table, int first_nm, int last_nm) {
 }
 
 /// Mean of a channel with its error: pixels are independent.
-test::Moments moments_of(const Picture& p, const std::string& channel) {
+test::Moments moments_of(const io::Picture& p, const std::string& channel) {
     test::Moments moments;
     for (int y = 0; y < p.height; ++y)
         for (int x = 0; x < p.width; ++x) moments.add(value_at(p, x, y, channel));
@@ -134,19 +134,19 @@ TEST_F(CliSpectral, BinsAreBandAveragesOfTheLight) {
     // Far from 1, as units do not matter.
     const std::string flat = csv("flat.csv", [](int) -> std::vector<double> { return {1e308}; });
     SpectrumTable even;
-    even.value.fill(
-        static_cast<float>(1 / (kLuminousEfficacy_lm_per_w * integral(standard_observer()[1]))));
+    even.value.fill(static_cast<float>(
+        1 / (kLuminousEfficacy_lm_per_w * integral(io::standard_observer()[1]))));
     const std::pair<std::string, SpectrumTable> lights[] = {
-        {"d65", find_light_spectrum("d65")->per_nit},
-        {"f11", find_light_spectrum("f11")->per_nit},
+        {"d65", io::find_light_spectrum("d65")->per_nit},
+        {"f11", io::find_light_spectrum("f11")->per_nit},
         {flat, even}};
     for (const auto& [name, per_nit] : lights) {
-        const Picture p = render({"--illuminant", name, "--bins", "380:730:10", "--spp", "256",
-                                  "--method", "filter=box"});
-        EXPECT_EQ(spectral_channels(p).size(), 35u);
+        const io::Picture p = render({"--illuminant", name, "--bins", "380:730:10", "--spp", "256",
+                                      "--method", "filter=box"});
+        EXPECT_EQ(io::spectral_channels(p).size(), 35u);
         double sum = 0, expected_sum = 0;
         for (int nm = 380; nm < 730; nm += 10) {
-            const test::Moments bin = moments_of(p, spectral_channel(nm + 5));
+            const test::Moments bin = moments_of(p, io::spectral_channel(nm + 5));
             const double expected = band_mean(per_nit, nm, nm + 10);
             EXPECT_TRUE(test::agrees(bin, expected))
                 << name << " " << nm << ": " << bin.mean() / expected << " +- "
@@ -163,16 +163,17 @@ TEST_F(CliSpectral, BinsAreBandAveragesOfTheLight) {
 // integral is their covariance within each bin, about w^3 / 12 times the slopes of both.
 TEST_F(CliSpectral, TheBinsIntegralIsXyzAndXyzIsRgb) {
     use(lamp());
-    const auto eye = standard_observer();
-    const SpectrumTable d65 = find_illuminant("d65");
+    const auto eye = io::standard_observer();
+    const SpectrumTable d65 = io::find_illuminant("d65");
     const V3d white = respond(eye, d65);
     const Matrix3 to_rgb = srgb_to_xyz(white / white.y).inverse();
     constexpr int width_nm = 10;
     const char* xyz[] = {"XYZ.X", "XYZ.Y", "XYZ.Z"};
     const char* rgb[] = {"R", "G", "B"};
     for (const std::string name : {"d65", "a"}) {
-        const SpectrumTable light = find_light_spectrum(name)->per_nit;
-        const Picture p = render({"--illuminant", name, "--bins", "360:830:10", "--spp", "256"});
+        const SpectrumTable light = io::find_light_spectrum(name)->per_nit;
+        const io::Picture p =
+            render({"--illuminant", name, "--bins", "360:830:10", "--spp", "256"});
         for (size_t c = 0; c < 3; ++c) {
             double bound = 0;
             for (int nm = kFirst_nm; nm < kLast_nm; ++nm)
@@ -189,8 +190,8 @@ TEST_F(CliSpectral, TheBinsIntegralIsXyzAndXyzIsRgb) {
                 for (int x = 0; x < p.width; ++x) {
                     double sum = 0;
                     for (size_t i = 0; i < weight.size(); ++i)
-                        sum +=
-                            weight[i] * value_at(p, x, y, spectral_channel(365. + 10. * double(i)));
+                        sum += weight[i] *
+                               value_at(p, x, y, io::spectral_channel(365. + 10. * double(i)));
                     off.add(sum - value_at(p, x, y, xyz[c]));
                 }
             EXPECT_TRUE(test::agrees(off, 0, bound)) << name << " " << xyz[c];
@@ -216,13 +217,13 @@ TEST_F(CliSpectral, EqualRendersAreEqualFiles) {
         all.insert(all.end(), more.begin(), more.end());
         return all;
     };
-    const Picture whole = render(words, "two.exr");
+    const io::Picture whole = render(words, "two.exr");
     const std::string two = file_bytes(path("two.exr"));
     EXPECT_TRUE(two == render_bytes(with({"--threads", "1"})));
     EXPECT_TRUE(two == render_bytes(with({"--threads", "4"})));
     EXPECT_FALSE(two == render_bytes(with({"--seed", "1"})));
 
-    const Picture part = render(with({"--crop", "13,5,20,12"}));
+    const io::Picture part = render(with({"--crop", "13,5,20,12"}));
     ASSERT_EQ(part.channels, whole.channels);
     for (int y = 0; y < 12; ++y)
         for (int x = 0; x < 20; ++x)
@@ -236,7 +237,7 @@ TEST_F(CliSpectral, AFileIsNamedWithoutItsFolder) {
     const std::string here = csv("flat.csv", flat), there = csv("folder/flat.csv", flat);
     const std::string a = render_bytes({"--illuminant", here});
     EXPECT_TRUE(a == render_bytes({"--illuminant", there}));
-    EXPECT_EQ(metadata_of(read_picture(path("out.exr")), "petzval:illuminant").substr(0, 10),
+    EXPECT_EQ(metadata_of(io::read_picture(path("out.exr")), "petzval:illuminant").substr(0, 10),
               "flat.csv (");
 }
 
@@ -247,7 +248,7 @@ TEST_F(CliSpectral, StandardErrorsAreHonest) {
         return render({"--bins", "400:700:100", "--spp", "36", "--size", "40x40", "--seed", seed},
                       std::string(seed) + ".exr");
     };
-    const Picture a = of_seed("1"), b = of_seed("2");
+    const io::Picture a = of_seed("1"), b = of_seed("2");
     for (const std::string c : {"R", "G", "B"}) {
         test::Moments excess;
         int near = 0, far = 0;
@@ -272,8 +273,8 @@ TEST_F(CliSpectral, StandardErrorsAreHonest) {
 
 TEST_F(CliSpectral, TheFileSaysHowItWasMade) {
     use(lamp());
-    const Picture p = render({"--bins", "380:730:10", "--spp", "64", "--method",
-                              "white-balance=illuminant", "--illuminant", "f11"});
+    const io::Picture p = render({"--bins", "380:730:10", "--spp", "64", "--method",
+                                  "white-balance=illuminant", "--illuminant", "f11"});
     const std::pair<const char*, const char*> expected[] = {{"petzval:bins", "380:730:10"},
                                                             {"petzval:spectral", "wavelengths"},
                                                             {"petzval:illuminant", "f11"},
@@ -297,12 +298,12 @@ TEST_F(CliSpectral, TheFileSaysHowItWasMade) {
         words.insert(words.end(), {option, value});
         return render(words);
     };
-    const Picture timed = layers_with("--time-limit", "0.01s");
+    const io::Picture timed = layers_with("--time-limit", "0.01s");
     EXPECT_GE(std::stoi(metadata_of(timed, "petzval:samples").substr(2)), 8);
     EXPECT_EQ(timed.channels.size(), 4u + 35 + 3 + 3 + 1);
     EXPECT_LT(mean_of(layers_with("--spp", "8"), "stderr.G"), 1);
 
-    const Picture plain = render({});
+    const io::Picture plain = render({});
     EXPECT_EQ(metadata_of(plain, "petzval:spectral"), "rgb");
     EXPECT_EQ(metadata_of(plain, "petzval:bins"), "(none)");
 }
@@ -316,11 +317,11 @@ TEST_F(CliSpectral, AStoppedRenderKeepsItsSpectra) {
     ASSERT_TRUE(wait_for_samples(render, 8 * 16 * 16));
     render.signal(SIGINT);
     EXPECT_EQ(render.wait().exit_code, 130);
-    const Picture partial = read_picture(path("out.partial.exr"));
-    EXPECT_EQ(spectral_channels(partial).size(), 6u);
-    EXPECT_GT(mean_of(partial, spectral_channel(525)), 0);
+    const io::Picture partial = io::read_picture(path("out.partial.exr"));
+    EXPECT_EQ(io::spectral_channels(partial).size(), 6u);
+    EXPECT_GT(mean_of(partial, io::spectral_channel(525)), 0);
     EXPECT_FALSE(std::filesystem::exists(path("out.exr")));
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

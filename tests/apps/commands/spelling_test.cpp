@@ -4,7 +4,7 @@
 
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliSpelling : public CliTest {
@@ -47,9 +47,9 @@ TEST_F(CliSpelling, OfAnOptionGivenTwiceTheLastHolds) {
                   {"--lens", "takumar-50mm-f1.2", "--focus", "1", "--method", "dispersion=shared"},
                   "b.exr"));
     // What adds up still does.
-    const Picture p = render({"--aov", "depth", "--aov", "albedo,depth"});
-    EXPECT_GE(channel_index(p, "depth.Z"), 0);
-    EXPECT_GE(channel_index(p, "albedo.R"), 0);
+    const io::Picture p = render({"--aov", "depth", "--aov", "albedo,depth"});
+    EXPECT_GE(io::channel_index(p, "depth.Z"), 0);
+    EXPECT_GE(io::channel_index(p, "albedo.R"), 0);
     // A plan's command has what holds, and only that.
     const Finished plan = run_petzval({"plan", scene_, "--size", "8x8", "--method", "max-depth=3",
                                        "--method", "max-depth=05", "--tolerance", "50%"});
@@ -247,4 +247,4 @@ TEST_F(CliSpelling, NoOutputIsLostWhereTwoAreGiven) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,7 +4,7 @@
 #include "io/image/picture_files.h"
 #include "tests/support/cli_spectral.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Lamps far out of focus, through a thin lens and a traced one.
@@ -36,12 +36,12 @@ TEST_F(CliTargets, EqualRendersAreEqualFiles) {
             all.insert(all.end(), more.begin(), more.end());
             return all;
         };
-        const Picture whole = render(words, "whole.exr");
+        const io::Picture whole = render(words, "whole.exr");
         const std::string bytes = file_bytes(path("whole.exr"));
         EXPECT_TRUE(bytes == render_bytes(with({"--threads", "1"})));
         EXPECT_TRUE(bytes == render_bytes(with({"--threads", "4"})));
         EXPECT_FALSE(bytes == render_bytes(lens({"--method", "targets=off"})));
-        const Picture part = render(with({"--crop", "13,5,40,31"}));
+        const io::Picture part = render(with({"--crop", "13,5,40,31"}));
         for (int y = 0; y < 31; ++y)
             for (int x = 0; x < 40; ++x)
                 for (const char* c : {"R", "G", "B"})
@@ -56,8 +56,8 @@ TEST_F(CliTargets, AlphaAndLayersStay) {
         Words off = layers, automatic = layers;
         off.insert(off.end(), {"--method", "targets=off"});
         automatic.insert(automatic.end(), {"--method", "targets=auto"});
-        const Picture without = render(lens(off), "off.exr"),
-                      with = render(lens(automatic), "auto.exr");
+        const io::Picture without = render(lens(off), "off.exr"),
+                          with = render(lens(automatic), "auto.exr");
         ASSERT_EQ(with.channels, without.channels);
         bool differs = false;
         for (int y = 0; y < with.height; ++y)
@@ -107,9 +107,9 @@ TEST_F(CliTargets, AreNearerToTheTruth) {
             thin({"--method", "targets=" + std::string(use), "--spp", samples, "--size", "128x84"}),
             name);
     };
-    const Picture reference = rendered("off", "1024", "reference.exr");
+    const io::Picture reference = rendered("off", "1024", "reference.exr");
     const auto error = [&](const char* use) {
-        return *compare(rendered(use, "64", "one.exr"), reference).front().symmetric_mse;
+        return *io::compare(rendered(use, "64", "one.exr"), reference).front().symmetric_mse;
     };
     EXPECT_LT(error("auto"), 0.75 * error("off"));
 }
@@ -121,4 +121,4 @@ TEST_F(CliTargets, OtherWordsAreRefused) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliTime : public CliTest {
@@ -38,7 +38,7 @@ class CliTime : public CliTest {
         EXPECT_EQ(done.exit_code, 2) << done.err;
         return done.err;
     }
-    [[nodiscard]] static V2f velocity_of(const Picture& picture, int x, int y) {
+    [[nodiscard]] static V2f velocity_of(const io::Picture& picture, int x, int y) {
         const auto channel = [&](const char* name) {
             const auto at = std::find(picture.channels.begin(), picture.channels.end(), name);
             return static_cast<size_t>(at - picture.channels.begin());
@@ -78,7 +78,7 @@ TEST_F(CliTime, TheLastFrameIsTheLastPose) {
         words.insert(words.end(), {"--background", "1,1,1"});
         return render(words).pixels;
     };
-    const auto last = read_picture(path("f25.exr")).pixels;
+    const auto last = io::read_picture(path("f25.exr")).pixels;
     EXPECT_EQ(last, at({"--at", "1s"}));
     EXPECT_EQ(last, at({"--at", "7s"}));
     EXPECT_NE(last, at({"--at", "0"}));
@@ -100,7 +100,7 @@ TEST_F(CliTime, WhatTheFirstFrameFindsHolds) {
     const Finished run = run_petzval(
         render_words({"--frames", "0:12:12", "--fstop", "2", "-o", path("f#.exr")}, scene));
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    const Picture a = read_picture(path("f0.exr")), b = read_picture(path("f12.exr"));
+    const io::Picture a = io::read_picture(path("f0.exr")), b = io::read_picture(path("f12.exr"));
     for (const char* name :
          {"petzval:cameraEye_m", "petzval:cameraTarget_m", "petzval:focus_m", "petzval:fov_deg"})
         EXPECT_EQ(metadata_of(a, name), metadata_of(b, name)) << name;
@@ -133,8 +133,8 @@ TEST_F(CliTime, AShutterBlursOnlyWhatMoves) {
     Words open = still;
     open.insert(open.end(), {"--shutter", "1/8", "--method", "shutter-curve=trapezoid"});
     EXPECT_EQ(render(still).pixels, render(open).pixels);
-    const Picture sharp = render({"--at", "0.5"}),
-                  blurred = render({"--at", "0.5", "--shutter", "1"});
+    const io::Picture sharp = render({"--at", "0.5"}),
+                      blurred = render({"--at", "0.5", "--shutter", "1"});
     EXPECT_NE(sharp.pixels, blurred.pixels);
     EXPECT_EQ(metadata_of(blurred, "petzval:time_s"), "0.5");
     EXPECT_EQ(metadata_of(blurred, "petzval:shutterOpen_s"), "1");
@@ -147,7 +147,7 @@ TEST_F(CliTime, AShutterBlursOnlyWhatMoves) {
         Words words = photo;
         words.insert(words.end(),
                      {"--shutter", time, "--method", "shutter-curve=" + std::string(curve)});
-        const Picture picture = render(words);
+        const io::Picture picture = render(words);
         double sum = 0;
         for (size_t i = 0; i < picture.pixels.size(); i += picture.channels.size())
             sum += double(picture.pixels[i]);
@@ -188,7 +188,7 @@ TEST_F(CliTime, VelocitiesArePixelsToTheNextFrame) {
     // Through "plan", 16 px are 3 m wide: the wall goes by 1.6 px and 3.2 px in a second.
     const Words plan = {"--camera", "plan",  "--at",     "0.25",     "--fps",
                         "4",        "--aov", "velocity", "--method", "filter=box"};
-    const Picture flat = render(plan);
+    const io::Picture flat = render(plan);
     const V2f moved = velocity_of(flat, 8, 8), none = velocity_of(flat, 5, 8);
     EXPECT_NEAR(moved.x, 0.4f, 1e-3f);
     EXPECT_NEAR(moved.y, -0.8f, 1e-3f);
@@ -197,7 +197,7 @@ TEST_F(CliTime, VelocitiesArePixelsToTheNextFrame) {
     // tan(0.25) of the distance.
     const Words tele = {"--camera", "tele", "--at",  "0",        "--animation", "approach",
                         "--fps",    "5",    "--aov", "velocity", "--method",    "filter=box"};
-    const Picture grown = render(tele);
+    const io::Picture grown = render(tele);
     for (const V2i& px : {V2i(5, 2), V2i(14, 5), V2i(8, 15)}) {
         const V2f off = V2f(px) + V2f(0.5f) - V2f(8);
         const V2f found = velocity_of(grown, px.x, px.y);
@@ -208,7 +208,7 @@ TEST_F(CliTime, VelocitiesArePixelsToTheNextFrame) {
     Words without = tele;
     without.erase(std::find(without.begin(), without.end(), "--aov"));
     without.erase(std::find(without.begin(), without.end(), "velocity"));
-    const Picture bare = render(without);
+    const io::Picture bare = render(without);
     for (size_t i = 0; i < 16 * 16; ++i)
         for (size_t c = 0; c < 4; ++c)
             EXPECT_EQ(grown.pixels[6 * i + c], bare.pixels[4 * i + c]) << i;
@@ -251,8 +251,8 @@ TEST_F(CliTime, VelocitiesThroughALensAreThoseOfItsPictures) {
                        "--aov",        "uv,velocity",
                        "--spp",        "64"});
     };
-    const Picture now = frame("0"), then = frame("1");
-    const auto uv = [](const Picture& p, int x, int y) {
+    const io::Picture now = frame("0"), then = frame("1");
+    const auto uv = [](const io::Picture& p, int x, int y) {
         const size_t first = (static_cast<size_t>(y) * 16 + static_cast<size_t>(x)) * 8;
         return V2f(p.pixels[first + 4], p.pixels[first + 5]);
     };
@@ -311,4 +311,4 @@ TEST_F(CliTime, RefusesWhatHasNoMeaning) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

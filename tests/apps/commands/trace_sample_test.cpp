@@ -4,7 +4,7 @@
 
 #include "tests/support/cli.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 class CliTraceSample : public CliTest {
@@ -26,7 +26,7 @@ TEST_F(CliTraceSample, EndsWithWhatARenderGives) {
                                  {"--lens", "takumar-50mm-f1.2", "--focus", "1"}}) {
         Words words = options;
         words.insert(words.end(), {"--spp", "6:7"});
-        const Picture p = render(words);
+        const io::Picture p = render(words);
         for (const auto& [x, y] : {std::pair{3, 8}, {8, 8}, {0, 0}}) {
             Words traced = options;
             traced.push_back(fmt::format("{},{},6", x, y));
@@ -102,4 +102,4 @@ TEST_F(CliTraceSample, RefusesWhatIsNoSample) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

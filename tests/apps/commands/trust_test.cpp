@@ -9,7 +9,7 @@
 #include "io/picture/seal.h"
 #include "tests/apps/commands/long_renders.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ std::string with_header(const std::string& state,
     uint64_t old = 0;
     std::memcpy(&old, state.data() + 16, 8);
     out += text + state.substr(24 + old, state.size() - 32 - old);
-    const uint64_t hash = fnv1a({reinterpret_cast<const uint8_t*>(out.data()), out.size()});
+    const uint64_t hash = io::fnv1a({reinterpret_cast<const uint8_t*>(out.data()), out.size()});
     return out.append(reinterpret_cast<const char*>(&hash), 8);
 }
 
@@ -188,14 +188,14 @@ TEST_F(Trust, HarmedPicturesAreRenderedAnew) {
     for (const char* name : {"p.exr", "p.png", "p.jpg"}) {
         const std::string good = file_bytes(path(name));
         std::string sealed;
-        for (const auto& [key, value] : read_metadata(path(name)))
-            if (key == kSealName) sealed = std::get<std::string>(value);
-        EXPECT_TRUE(is_as_written(path(name), sealed)) << name;
+        for (const auto& [key, value] : io::read_metadata(path(name)))
+            if (key == io::kSealName) sealed = std::get<std::string>(value);
+        EXPECT_TRUE(io::is_as_written(path(name), sealed)) << name;
         for (size_t at = 8; at < good.size(); at += 1 + good.size() / 300) {
             std::string bad = good;
             bad[at] = char(bad[at] ^ 4);
             write(name, bad);
-            EXPECT_FALSE(is_as_written(path(name), sealed)) << name << ' ' << at;
+            EXPECT_FALSE(io::is_as_written(path(name), sealed)) << name << ' ' << at;
         }
         std::string bad = good;
         bad[good.size() * 2 / 3] = char(bad[good.size() * 2 / 3] ^ 1);
@@ -274,4 +274,4 @@ TEST_F(Trust, AStreamThatIsNotThereIsNoOutput) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 const ServerGate kLocal{{"127.0.0.1:8123", "localhost:8123"}, ""};
@@ -99,4 +99,4 @@ TEST(LiveGuard, WithATokenTheAddressHasToHaveIt) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

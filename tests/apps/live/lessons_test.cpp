@@ -9,7 +9,7 @@
 #include "apps/request/value_error.h"
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Json = nlohmann::json;
@@ -149,8 +149,8 @@ TEST(Lessons, RefuseWhatTheyCannotShow) {
                  ValueError);
     EXPECT_THROW((void)lesson_of("depth", {{"lens", {"takumar-50mm-f1.2"}}, {"focus", {"1m"}}}),
                  ValueError);
-    EXPECT_THROW((void)lesson_of("bokeh", bk7("4")), InputError);
-    EXPECT_THROW((void)lesson_of("spherical", takumar("4", "1m")), InputError);
+    EXPECT_THROW((void)lesson_of("bokeh", bk7("4")), io::InputError);
+    EXPECT_THROW((void)lesson_of("spherical", takumar("4", "1m")), io::InputError);
     EXPECT_THROW((void)lesson_of("depth", takumar("4", "2cm")), std::exception);
     for (const char* fstop : {"0.1", "1e6"})
         for (const char* lesson : {"confusion", "depth", "bokeh", "edge"}) try {
@@ -158,11 +158,11 @@ TEST(Lessons, RefuseWhatTheyCannotShow) {
             } catch (const std::exception& error) {
                 EXPECT_STRNE(error.what(), "");
             }
-    EXPECT_THROW((void)lesson_of("spherical", bk7("0.4")), InputError);
+    EXPECT_THROW((void)lesson_of("spherical", bk7("0.4")), io::InputError);
     EXPECT_THROW(
         (void)lesson_of("plane", {{"lens", {"thin"}}, {"fstop", {"1"}}, {"focus", {"inf"}}}),
         ValueError);
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 #include "apps/request/value_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using nlohmann::json;
@@ -135,4 +135,4 @@ TEST(RoughPicture, IsNotNeededWhereTheSamplesStay) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 #include "tests/support/statistics.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using namespace std::chrono_literals;
@@ -39,7 +39,7 @@ LiveStatus end_of(const Viewer& viewer, uint64_t version) {
 std::vector<uint8_t> file_of(const RenderRequest& request, const std::filesystem::path& file) {
     RenderSession session(1);
     session.prepare(request, [](const std::string&) {});
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     session.render(monitor);
     session.write(file);
     return test::read_bytes(file);
@@ -125,7 +125,7 @@ TEST(LiveViewer, WhatIsNotDoneIsNotSaved) {
     RenderRequest request = request_of();
     viewer.ask(1, request);
     end_of(viewer, 1);
-    EXPECT_THROW(viewer.write(2, folder / "a.exr"), ArgumentError);
+    EXPECT_THROW(viewer.write(2, folder / "a.exr"), io::ArgumentError);
     EXPECT_FALSE(std::filesystem::exists(folder / "a.exr"));
     EXPECT_NO_THROW(viewer.write(1, folder / "a.exr"));
 }
@@ -168,4 +168,4 @@ TEST(LiveViewer, PagesShareTheScene) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

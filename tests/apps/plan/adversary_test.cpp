@@ -4,7 +4,7 @@
 
 #include "tests/measure/plan_verdict.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr uint32_t kScenes = 24;  ///< three of each kind
@@ -12,7 +12,7 @@ constexpr uint32_t kScenes = 24;  ///< three of each kind
 // What is true is known within bounds of 95 %, and a plan's figures are bounds too: of 24 scenes
 // one may be above its promise by chance, none far.
 TEST(Adversary, DoesNotFoolPlans) {
-    TbbExecutor executor(2);
+    integrator::TbbExecutor executor(2);
     int above = 0, noisy = 0, figures = 0;
     for (uint32_t i = 0; i < kScenes; ++i) {
         const Verdict v = judge(i, {4e5, 6e5}, executor);
@@ -34,4 +34,4 @@ TEST(Adversary, DoesNotFoolPlans) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

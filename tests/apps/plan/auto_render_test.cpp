@@ -3,7 +3,7 @@
 #include "io/image/picture_files.h"
 #include "tests/apps/plan/plans.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// Renders that choose for themselves, of a frame that is large enough for a pilot.
@@ -26,10 +26,10 @@ TEST_F(AutoRender, TakesRgbWhereTheLensDoesNotShow) {
               std::string::npos)
         << text;
     EXPECT_EQ(text.find("spectral: wavelengths"), std::string::npos) << text;
-    const Picture picture = read_picture(path("auto.exr"));
+    const io::Picture picture = io::read_picture(path("auto.exr"));
     static_cast<void>(
         said(lens({"--spectral", "rgb", "--method", "dispersion=shared"}), "asked.exr"));
-    EXPECT_EQ(picture.pixels, read_picture(path("asked.exr")).pixels);
+    EXPECT_EQ(picture.pixels, io::read_picture(path("asked.exr")).pixels);
     EXPECT_NE(file_bytes(path("auto.exr")).find("petzval:plan"), std::string::npos);
     EXPECT_EQ(file_bytes(path("asked.exr")).find("petzval:plan"), std::string::npos);
 }
@@ -39,7 +39,8 @@ TEST_F(AutoRender, KeepsWavelengthsApartWhereTheToleranceIsTight) {
     EXPECT_NE(text.find("spectral: wavelengths, as lens cooke"), std::string::npos) << text;
     EXPECT_NE(text.find("dispersion: hero, as dispersion of "), std::string::npos) << text;
     static_cast<void>(said(lens({"--method", "dispersion=hero"}), "asked.exr"));
-    EXPECT_EQ(read_picture(path("auto.exr")).pixels, read_picture(path("asked.exr")).pixels);
+    EXPECT_EQ(io::read_picture(path("auto.exr")).pixels,
+              io::read_picture(path("asked.exr")).pixels);
 }
 
 // An even sky has no noise but that of the weights: a hero ray's are uneven.
@@ -61,7 +62,7 @@ TEST_F(AutoRender, IsNotShakenByGlints) {
         gem.camera.lens = "takumar-50mm-f1.2";
         const RenderSetup setup = set_up_render(gem, kSilent);
         const ModeChoice found = choose_mode({gem, {}, {}}, setup, executor_);
-        EXPECT_EQ(found.mode(), DispersionMode::Hero) << width;
+        EXPECT_EQ(found.mode(), camera::DispersionMode::Hero) << width;
         EXPECT_GT(found.effort_of_next().value_or(0), 1.8) << width;
         EXPECT_LT(found.effort_of_next().value_or(0), 4.5) << width;
     }
@@ -95,7 +96,8 @@ TEST_F(AutoRender, DecidesTheSameForEveryPartOfTheFrame) {
         Words words = lens(more);
         EXPECT_EQ(said(words, "part.exr"), whole) << more[0];
     }
-    EXPECT_EQ(read_picture(path("part.exr")).pixels, read_picture(path("whole.exr")).pixels);
+    EXPECT_EQ(io::read_picture(path("part.exr")).pixels,
+              io::read_picture(path("whole.exr")).pixels);
 }
 
 // No test of simpler models where there is nothing to decide, for a thumbnail, or where all was
@@ -115,4 +117,4 @@ TEST_F(AutoRender, LooksOnlyWhereItMust) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -11,7 +11,7 @@
 #include "tests/support/cli_spectral.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr uint32_t kSamples = 2;  ///< of a replicate: few, so that its mean is noisy
@@ -36,9 +36,9 @@ class PilotErrors : public CliSpectral {
         return model;
     }
 
-    TbbExecutor executor_{2};
+    integrator::TbbExecutor executor_{2};
     SceneRequest request_;
-    RenderJob job_;
+    integrator::RenderJob job_;
 };
 
 // Half as bright, with a fifth of noise in a replicate's mean: within 2 % of
@@ -46,7 +46,7 @@ class PilotErrors : public CliSpectral {
 // further off.
 TEST_F(PilotErrors, BiasHasNoBias) {
     constexpr double kA = 0.5, kB = 1, kFloor = 0.1;
-    const double truth = symmetric_square(kA, kB, kFloor);
+    const double truth = io::symmetric_square(kA, kB, kFloor);
     test::Moments found, noise;
     for (uint32_t seed = 0; seed < 24; ++seed) {
         const Pilot pilot(request_.size, 2304, executor_, seed);
@@ -99,7 +99,7 @@ TEST_F(PilotErrors, BlocksHoldNoMoreThanAPixelCanBeOff) {
     EXPECT_GT(noise.variances.back().mean, 1e3);
     double sum = 0;
     for (const double block : noise.blocks) sum += block;
-    EXPECT_NEAR(sum, kMostSymmetricMse, 0.05);
+    EXPECT_NEAR(sum, io::kMostSymmetricMse, 0.05);
 }
 
 // Twice as bright is as wrong as half as bright.
@@ -110,7 +110,7 @@ TEST_F(PilotErrors, IsSymmetric) {
         return square_error(pilot, {{&x, 1}, {&y, -1}}, {&x, &y, 0.1}).mean;
     };
     EXPECT_NEAR(error(*a, *b), error(*b, *a), 1e-9);
-    EXPECT_NEAR(error(*a, *b), symmetric_square(0.5, 1, 0.1), 1e-6);
+    EXPECT_NEAR(error(*a, *b), io::symmetric_square(0.5, 1, 0.1), 1e-6);
 }
 
 // The variance of a sample, against that of many samples.
@@ -138,4 +138,4 @@ TEST_F(PilotErrors, PartsCountWhatHoldsTheNoise) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

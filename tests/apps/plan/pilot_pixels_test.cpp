@@ -10,14 +10,14 @@
 
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr V2i kSize{160, 90};
 const FilmMap kCorner{{4, 3}, {8, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}};
 
-std::vector<FilmRegion> regions() {
-    const auto of = [](std::vector<Rect> rects) { return FilmRegion{std::move(rects)}; };
+std::vector<camera::FilmRegion> regions() {
+    const auto of = [](std::vector<Rect> rects) { return camera::FilmRegion{std::move(rects)}; };
     return {of({{20, 10, 40, 20}}), of({{30, 15, 50, 30}, {100, 50, 102, 51}}),
             of({{5, 80, 8, 83}})};
 }
@@ -119,7 +119,7 @@ TEST(PilotPixels, UnseenIsTheWorstPixels) {
 }
 
 TEST(PilotPixels, MoreRegionsThanLooksForThemLeaveTheEvenOnes) {
-    std::vector<FilmRegion> many;
+    std::vector<camera::FilmRegion> many;
     for (int i = 0; i < 200; ++i)
         many.push_back({{{i % 40 * 4, i / 40 * 10, i % 40 * 4 + 4, i / 40 * 10 + 5}}});
     test::Moments share;
@@ -146,4 +146,4 @@ TEST(PilotPixels, UnseenIsLessWhereMoreIsLookedAt) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

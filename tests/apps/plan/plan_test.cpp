@@ -14,7 +14,7 @@
 #include "tests/apps/plan/plans.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using test::Mean;
@@ -33,7 +33,7 @@ TEST_F(Plans, APilotFindsADifferenceThatIsKnown) {
     pilot.sample(*a, 4);
     pilot.sample(*b, 4);
     const Estimate found = bias(pilot, *a, *b);
-    const double floor = kSymmetricFloorShare * 1, middle = (1.02 * 1.02 + 1) / 2;
+    const double floor = io::kSymmetricFloorShare * 1, middle = (1.02 * 1.02 + 1) / 2;
     EXPECT_NEAR(found.mean, 0.02 * 0.02 / (middle + floor * floor) / 3, 1e-9);
     EXPECT_NEAR(found.error, 0, 1e-9);
     EXPECT_NEAR(noise(pilot, *a, *b).mean, 0, 1e-12);
@@ -59,10 +59,10 @@ TEST_F(Plans, NoiseIsNoBias) {
 // anywhere, and falls in proportion where points are independent.
 TEST_F(Plans, VarianceIsThatOfALook) {
     const Pilot pilot({64, 36}, 600, executor_);
-    RenderJob job;
+    integrator::RenderJob job;
     job.sampler = SamplerKind::Independent;
-    const auto a =
-        pilot.model(set_up_render(request(scene_, {64, 36}), kSilent), job, PathOptions());
+    const auto a = pilot.model(set_up_render(request(scene_, {64, 36}), kSilent), job,
+                               integrator::PathOptions());
     pilot.sample(*a, 8);
     const Estimate eight = noise(pilot, *a, *a);
     pilot.sample(*a, 32);
@@ -74,14 +74,14 @@ TEST_F(Plans, VarianceIsThatOfALook) {
 
 TEST_F(Plans, LateralDispersionIsInPixels) {
     const SceneRequest narrow = tabletop({100, 60});
-    const RenderSetup split = set_up_render(with(narrow, DispersionMode::Split), kSilent);
-    const auto view = [&](DispersionMode mode) {
+    const RenderSetup split = set_up_render(with(narrow, camera::DispersionMode::Split), kSilent);
+    const auto view = [&](camera::DispersionMode mode) {
         return set_up_view(split, with(narrow, mode), kSilent).view.still;
     };
-    const auto shared = view(DispersionMode::Shared);
-    const auto dispersion_px = [&](const Camera& camera, V2i size) {
-        return lateral_dispersion_px(camera, *shared, split.view.observer,
-                                     split.from.camera.focus_plane(), size);
+    const auto shared = view(camera::DispersionMode::Shared);
+    const auto dispersion_px = [&](const camera::Camera& camera, V2i size) {
+        return camera::lateral_dispersion_px(camera, *shared, split.view.observer,
+                                             split.from.camera.focus_plane(), size);
     };
     const double once = dispersion_px(*split.view.still, {100, 60});
     EXPECT_NEAR(dispersion_px(*split.view.still, {400, 240}), 4 * once, 0.02 * once);
@@ -295,7 +295,7 @@ TEST(PlanWords, LampsAreInMillimetresAndSpotsOfTheSkyInDegrees) {
 }
 
 // Without the layers that a picture to a noise has.
-Picture colours_of(Picture picture) {
+io::Picture colours_of(io::Picture picture) {
     const size_t channels = picture.channels.size();
     std::vector<float> colours;
     for (size_t i = 0; i < picture.pixels.size(); ++i)
@@ -324,7 +324,7 @@ TEST_F(Plans, TheCommandRenders) {
     for (size_t i = 0; i < all.size(); ++i) EXPECT_TRUE(all[i].starts_with(starts[i])) << all[i];
     Words long_render = options;
     long_render.insert(long_render.end(), {"--spp", "4096"});
-    const Picture reference = render(long_render, "reference.exr");
+    const io::Picture reference = render(long_render, "reference.exr");
     for (const size_t line : {starts.size() - 3, starts.size() - 1}) {
         std::istringstream command(all[line]);
         Words parts;
@@ -336,15 +336,17 @@ TEST_F(Plans, TheCommandRenders) {
         parts.emplace_back("--quiet");
         const Finished rendered = run_petzval(parts);
         EXPECT_THAT(rendered.exit_code, testing::AnyOf(0, 5)) << rendered.err;
-        const double mse =
-            *compare(colours_of(read_picture(path("out.exr"))), reference).front().symmetric_mse;
+        const double mse = *io::compare(colours_of(io::read_picture(path("out.exr"))), reference)
+                                .front()
+                                .symmetric_mse;
         EXPECT_LT(std::sqrt(mse), 1.25 * 0.08) << "one picture, and what is predicted is the mean";
         EXPECT_GT(std::sqrt(mse), 0.08 / 4) << "a part of the picture may need more than others";
     }
 }
 
 TEST(PlanWords, GhostsAreALineWithAReason) {
-    const auto line = [](Coating coating, GhostUse use, const std::optional<GhostsFound>& found) {
+    const auto line = [](camera::Coating coating, GhostUse use,
+                         const std::optional<GhostsFound>& found) {
         Plan plan;
         plan.requested.asked.camera.coating = coating;
         plan.requested.asked.camera.ghosts = use;
@@ -354,15 +356,15 @@ TEST(PlanWords, GhostsAreALineWithAReason) {
         return std::string();
     };
     using enum GhostUse;
-    EXPECT_EQ(line(Coating::MgF2, Auto, {}), "off: no lens is traced");
-    EXPECT_EQ(line(Coating::MgF2, Off, GhostsFound{false, 3, {}}), "off: it was asked for");
-    EXPECT_EQ(line(Coating::Ideal, Auto, GhostsFound{false, 0, {}}),
+    EXPECT_EQ(line(camera::Coating::MgF2, Auto, {}), "off: no lens is traced");
+    EXPECT_EQ(line(camera::Coating::MgF2, Off, GhostsFound{false, 3, {}}), "off: it was asked for");
+    EXPECT_EQ(line(camera::Coating::Ideal, Auto, GhostsFound{false, 0, {}}),
               "off: no surface reflects, and no lamp shines into the lens");
-    EXPECT_EQ(line(Coating::Ideal, Auto, GhostsFound{false, 3, {}}),
+    EXPECT_EQ(line(camera::Coating::Ideal, Auto, GhostsFound{false, 3, {}}),
               "off: no surface reflects; 3 lamps shine into the lens: ⟨coating⟩=year shows ghosts");
-    EXPECT_EQ(line(Coating::Year, Only, GhostsFound{true, 1, 1.}),
+    EXPECT_EQ(line(camera::Coating::Year, Only, GhostsFound{true, 1, 1.}),
               "only: surfaces reflect, with coating year; a lamp shines into the lens");
-    EXPECT_EQ(line(Coating::MgF2, Auto, GhostsFound{true, 0, 0.012}),
+    EXPECT_EQ(line(camera::Coating::MgF2, Auto, GhostsFound{true, 0, 0.012}),
               "auto: surfaces reflect, with coating mgf2, about 1.2 % of the picture's light");
 }
 
@@ -371,12 +373,12 @@ TEST_F(Plans, TheShareOfGhostsIsThatOfARender) {
     SceneRequest asked = request(scene_, {32, 18});
     asked.camera.lens = "double-gauss-100mm-f2";
     asked.camera.focus = FocusDistance{9};
-    asked.camera.coating = Coating::Uncoated;
+    asked.camera.coating = camera::Coating::Uncoated;
     const Plan plan = make_plan({asked, {}, {}, 0.1}, executor_, kSilent, 1e5);
     ASSERT_TRUE(plan.ghosts && plan.ghosts->share);
     EXPECT_TRUE(plan.ghosts->shown);
     EXPECT_EQ(plan.ghosts->lamps, 1u);
-    const Picture long_render =
+    const io::Picture long_render =
         render({"--lens", "double-gauss-100mm-f2", "--focus", "9", "--method", "coating=uncoated",
                 "--aov", "ghosts", "--size", "32x18", "--spp", "512"});
     double ghosts = 0, all = 0;
@@ -421,4 +423,4 @@ TEST_F(Plans, ArgumentsThatAreWrongEndWithTwo) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

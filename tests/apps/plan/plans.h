@@ -7,7 +7,7 @@
 #include "io/image/symmetric_mse.h"
 #include "tests/support/cli_spectral.h"
 
-namespace petzval {
+namespace petzval::apps {
 
 inline const auto kSilent = [](const std::string&) {};
 
@@ -16,7 +16,7 @@ inline const std::string kFirstLight = PETZVAL_ASSETS "/scenes/first_light.glb",
 
 class Plans : public CliSpectral {
   protected:
-    TbbExecutor executor_{2};
+    integrator::TbbExecutor executor_{2};
 
     [[nodiscard]] SceneRequest request(const std::string& scene, V2i size) const {
         SceneRequest r;
@@ -33,7 +33,8 @@ class Plans : public CliSpectral {
     }
     [[nodiscard]] std::unique_ptr<PilotModel> model(const Pilot& pilot,
                                                     const SceneRequest& r) const {
-        return pilot.model(set_up_render(r, kSilent), RenderJob(), PathOptions());
+        return pilot.model(set_up_render(r, kSilent), integrator::RenderJob(),
+                           integrator::PathOptions());
     }
     /// Symmetric MSE of a against b without noise, and of the noise of a.
     [[nodiscard]] static Estimate bias(const Pilot& pilot, const PilotModel& a,
@@ -44,7 +45,7 @@ class Plans : public CliSpectral {
                                         const PilotModel& b) {
         return noise_of(pilot, a, {&a, &b, pilot_floor(pilot, b)}).variances.back();
     }
-    [[nodiscard]] static SceneRequest with(SceneRequest r, DispersionMode dispersion) {
+    [[nodiscard]] static SceneRequest with(SceneRequest r, camera::DispersionMode dispersion) {
         r.spectral.mode = SpectralMode::Wavelengths;
         r.camera.dispersion = dispersion;
         return r;
@@ -61,4 +62,4 @@ class Plans : public CliSpectral {
     }
 };
 
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -11,18 +11,18 @@
 #include "camera/setup/film_region.h"
 #include "tests/support/scenes.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using test::diffuse_material, test::emitter_material, test::place, test::quad;
 
 constexpr V2i kFrame_px{320, 180};
 
-ThinLensCamera camera(float radius_m, float focus_m) {
-    ThinLens lens{look_at(V3f(0.f), V3f(0, 0, -1)), 0.6f, 320 / 180.f, {}};
-    if (radius_m > 0) lens.iris.emplace(ApertureShape(), 1e3 * double(radius_m));
+camera::ThinLensCamera camera(float radius_m, float focus_m) {
+    camera::ThinLens lens{camera::look_at(V3f(0.f), V3f(0, 0, -1)), 0.6f, 320 / 180.f, {}};
+    if (radius_m > 0) lens.iris.emplace(camera::ApertureShape(), 1e3 * double(radius_m));
     lens.focus_m = focus_m;
-    return ThinLensCamera(lens);
+    return camera::ThinLensCamera(lens);
 }
 
 /// A square across the axis, with its centre there.
@@ -188,11 +188,11 @@ TEST(Things, ASunOfASkyIsALamp) {
 TEST(FilmRegions, HoldTheLightOfALampInFocusAndOutOfFocus) {
     for (const auto& [radius_m, focus_m] :
          {std::pair{0.f, 2.f}, std::pair{0.02f, 2.f}, std::pair{0.02f, 1.f}}) {
-        const ThinLensCamera seen = camera(radius_m, focus_m);
+        const camera::ThinLensCamera seen = camera(radius_m, focus_m);
         const V3f centre(0.31f, -0.12f, -2.f);
         const Scene scene = lamps({centre}, 0.004f);
         const auto features = small_features_of(scene);
-        const auto regions = film_regions(seen, kFrame_px, features);
+        const auto regions = camera::film_regions(seen, kFrame_px, features);
         const Bvh bvh(scene, Traversal::Robust);
         int64_t lit = 0, outside = 0;
         for (int y = 0; y < kFrame_px.y; ++y)
@@ -201,7 +201,7 @@ TEST(FilmRegions, HoldTheLightOfALampInFocusAndOutOfFocus) {
                 for (uint32_t i = 0; i < 2000 && !met; ++i) {
                     const Sampler sampler(SamplerKind::Owen, 0, {x, y, i});
                     const V2f at = V2f(float(x), float(y)) + sampler.get2(Dim::Film);
-                    const CameraSample rays =
+                    const camera::CameraSample rays =
                         seen.sample({at / V2f(kFrame_px), sampler}, Bands::rgb());
                     // All pixels far from the lamp would take long.
                     const V3f d = rays[0].ray.direction, o = rays[0].ray.origin;
@@ -217,19 +217,20 @@ TEST(FilmRegions, HoldTheLightOfALampInFocusAndOutOfFocus) {
         EXPECT_GT(lit, 0);
         EXPECT_EQ(outside, 0) << radius_m << ' ' << focus_m;
         int64_t area = 0;
-        for (const FilmRegion& r : regions) area = std::max(area, r.area_px());
+        for (const camera::FilmRegion& r : regions) area = std::max(area, r.area_px());
         EXPECT_LT(area, 6 * lit + 40) << radius_m << ' ' << focus_m;
     }
 }
 
 TEST(FilmRegions, WhatTheCameraDoesNotSeeHasNone) {
     const Scene scene = lamps({{0, 0, 2}}, 0.1f);
-    for (const FilmRegion& r : film_regions(camera(0.02f, 1), kFrame_px, small_features_of(scene)))
+    for (const camera::FilmRegion& r :
+         camera::film_regions(camera(0.02f, 1), kFrame_px, small_features_of(scene)))
         EXPECT_TRUE(r.rects.empty());
 }
 
 TEST(FilmRegions, PixelsAreCountedOff) {
-    const FilmRegion region{{{2, 3, 4, 5}, {10, 10, 11, 12}}};
+    const camera::FilmRegion region{{{2, 3, 4, 5}, {10, 10, 11, 12}}};
     ASSERT_EQ(region.area_px(), 6);
     for (int64_t i = 0; i < 6; ++i) {
         const auto [x, y] = region.pixel(i);
@@ -247,7 +248,7 @@ TEST(Displacement, IsTheCircleOfConfusion) {
     place(scene, square({0, 0, -4}, 20.f), diffuse_material(0.5f));
     finish_scene(scene);
     const Bvh bvh(scene, Traversal::Robust);
-    const ThinLensCamera lens = camera(0.02f, 2), pinhole = camera(0, 2);
+    const camera::ThinLensCamera lens = camera(0.02f, 2), pinhole = camera(0, 2);
     const Observer rgb;
     const Displacement found = displacement_of({pinhole, rgb}, {lens, rgb}, scene, bvh,
                                                {V3f(0.f), V3f(0, 0, -1), 2}, kFrame_px, 256, false);
@@ -271,4 +272,4 @@ TEST(Displacement, IsTheCircleOfConfusion) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

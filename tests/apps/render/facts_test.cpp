@@ -10,7 +10,7 @@
 #include "apps/request/fields.h"
 #include "tests/support/moving_gltf.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Wishes = std::vector<std::pair<std::string, std::string>>;
@@ -167,4 +167,4 @@ TEST(RenderFacts, EachFieldOfThePictureChangesThem) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 #include "tests/support/plan_scenes/plan_scenes.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr uint32_t kScenes = 20, kParts = 6, kMostSamples = 512;
@@ -18,12 +18,12 @@ constexpr double kNoise = 0.2;
 
 struct Rendered {
     std::vector<double> values;  ///< R, G and B of each pixel
-    std::optional<NoiseReport> noise;
+    std::optional<integrator::NoiseReport> noise;
 };
 
 Rendered rendered(RenderSession& session, const RenderRequest& request) {
     session.prepare(request, [](const std::string&) {});
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     EXPECT_FALSE(session.render(monitor).stopped);
     Rendered out{{}, session.noise(session.film())};
     const Film& film = session.film();
@@ -92,4 +92,4 @@ TEST(NoiseAdversary, TheNoiseIsAsPrinted) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -11,10 +11,10 @@
 #include "io/image/output.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
-const Notice kSilent = [](const std::string&) {};
+const io::Notice kSilent = [](const std::string&) {};
 
 RenderRequest request_of(const char* scene = "first_light.glb") {
     RenderRequest request;
@@ -24,7 +24,7 @@ RenderRequest request_of(const char* scene = "first_light.glb") {
     return request;
 }
 
-std::vector<float> values_of(const PictureRows& picture) {
+std::vector<float> values_of(const io::PictureRows& picture) {
     const size_t row = picture.layout.channels.size() * size_t(picture.layout.width);
     std::vector<float> out(row * size_t(picture.layout.height));
     for (int y = 0; y < picture.layout.height; ++y) picture.row(y, out.data() + size_t(y) * row);
@@ -35,7 +35,7 @@ std::vector<float> values_of(const PictureRows& picture) {
 uint64_t render(RenderSession& session, const RenderRequest& request) {
     session.prepare(request, kSilent);
     const uint64_t before = session.film().taken_count();
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     EXPECT_FALSE(session.render(monitor).stopped);
     return before;
 }
@@ -150,11 +150,11 @@ TEST(RenderSession, StopsAndGoesOn) {
     RenderSession session(2);
     const RenderRequest request = request_of();
     session.prepare(request, kSilent);
-    RenderMonitor stopped;
+    integrator::RenderMonitor stopped;
     stopped.stop = true;
     EXPECT_TRUE(session.render(stopped).stopped);
     EXPECT_LT(session.film().taken_count(), 4 * kPixels);
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     EXPECT_FALSE(session.render(monitor).stopped);
     EXPECT_EQ(values_of(session.light()), alone(request));
 }
@@ -165,7 +165,7 @@ TEST(RenderSession, GoesOnAfterARequestThatFails) {
     render(session, request);
     RenderRequest wrong = request;
     wrong.scene.scene = "not_there.glb";
-    EXPECT_THROW(session.prepare(wrong, kSilent), InputError);
+    EXPECT_THROW(session.prepare(wrong, kSilent), io::InputError);
     EXPECT_EQ(render(session, request), 0u);
     EXPECT_EQ(values_of(session.light()), alone(request));
 }
@@ -185,11 +185,11 @@ TEST(RenderSession, FramesShareTheirSky) {
     const test::TemporaryFolder folder;
     RenderRequest request = request_of("flying_lamp.glb");
     request.scene.environment = folder.path() / "sky.exr";
-    Picture sky;
+    io::Picture sky;
     sky.width = sky.full_width = 4, sky.height = sky.full_height = 2;
     sky.channels = {"R", "G", "B"};
     sky.pixels.assign(24, 3.f);
-    write_output(*request.scene.environment, sky, {});
+    io::write_output(*request.scene.environment, sky, {});
     request.moment.at = Moment{0.5};
     const auto expected = alone(request);
 
@@ -213,7 +213,7 @@ TEST(RenderSession, FramesAreThoseOfSingleRenders) {
     }
     RenderRequest wrong = request;
     wrong.scene.camera.lens = "no-such-lens";
-    EXPECT_THROW(session.prepare(wrong, kSilent), InputError);
+    EXPECT_THROW(session.prepare(wrong, kSilent), io::InputError);
     // Another sky and another file are another sequence.
     request.scene.environment_strength = 2;
     render(session, request);
@@ -225,4 +225,4 @@ TEST(RenderSession, FramesAreThoseOfSingleRenders) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

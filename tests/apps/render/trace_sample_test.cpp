@@ -7,10 +7,10 @@
 #include "apps/render/render_session.h"
 #include "apps/request/fields.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
-const Notice kUnheard = [](const std::string&) {};
+const io::Notice kUnheard = [](const std::string&) {};
 
 /// A scene with fields of `petzval render`.
 struct Case {
@@ -21,20 +21,20 @@ struct Case {
 };
 
 /// Light that the events of a sample add up to, as the way to the film adds it.
-V3f sum_of(const SampleRecord& sample) {
+V3f sum_of(const integrator::SampleRecord& sample) {
     std::array<f4, 2> light{};  // of ordinary rays, and of those to targets
     f4 along{};
     size_t path = 0;
     const auto end_path = [&] {
         if (path == 0) return;
-        const CameraPath& ray = sample.rays[path - 1];
+        const camera::CameraPath& ray = sample.rays[path - 1];
         light[ray.to_target] += ray.weight * ray.mis_weight * along;
         along = f4{};
     };
-    for (const PathEvent& event : sample.events) {
-        if (event.step == PathStep::Begins) end_path(), ++path;
-        if (event.step == PathStep::Shines || event.step == PathStep::Scatters ||
-            event.step == PathStep::Sky)
+    for (const integrator::PathEvent& event : sample.events) {
+        if (event.step == integrator::PathStep::Begins) end_path(), ++path;
+        if (event.step == integrator::PathStep::Shines ||
+            event.step == integrator::PathStep::Scatters || event.step == integrator::PathStep::Sky)
             along += event.lanes;
     }
     end_path();
@@ -54,7 +54,7 @@ TEST_P(TraceSample, GivesWhatTheFilmGets) {
     if (request.scene.spectral.bins) request.samples.range = SampleRange{0, kReplicates};
     RenderSession session(1);
     session.prepare(request, kUnheard);
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     ASSERT_FALSE(session.render(monitor).stopped);
     const Film& film = session.film();
     int bright = 0, targets = 0;
@@ -64,9 +64,10 @@ TEST_P(TraceSample, GivesWhatTheFilmGets) {
             V4f all(0.f);
             const SampleRange range = *request.samples.range;
             for (uint32_t i = range.first; i < range.end; ++i) {
-                const SampleRecord of = session.trace_sample({x, y, i});
+                const integrator::SampleRecord of = session.trace_sample({x, y, i});
                 all += of.film;
-                targets += static_cast<int>(std::ranges::count_if(of.rays, &CameraPath::to_target));
+                targets += static_cast<int>(
+                    std::ranges::count_if(of.rays, &camera::CameraPath::to_target));
                 const V3f sum =
                     request.samples.clamp_nits ? V3f(of.film.x, of.film.y, of.film.z) : sum_of(of);
                 ASSERT_EQ(V3f(of.film.x, of.film.y, of.film.z), sum) << x << ',' << y;
@@ -93,4 +94,4 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"glass.glb", {{"max-depth", {"3"}}, {"sampler", {"independent"}}}}));
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -11,7 +11,7 @@
 #include "apps/request/value_error.h"
 #include "core/film/spectral_film.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 /// A text for each field, which is not its default, and what is written for it.
@@ -190,4 +190,4 @@ TEST(Fields, PicturesOfASequenceHaveTheirOwn) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 float focus_m(const std::string& text) {
@@ -155,4 +155,4 @@ TEST(Parse, NumbersLieInTheirRanges) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -13,7 +13,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using nlohmann::json;
@@ -322,8 +322,9 @@ void expect_as_computed(const Posing& posing, const Paint& paint, bool mask) {
     world.scene.sky = Sky::uniform(Rgb(float(kSky)));
     world.finish();
     EXPECT_EQ(has_motion(world.scene), std::string(posing.name).starts_with("moving"));
-    const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
-    PathStats stats;
+    const integrator::PathTracer tracer(world.scene, *world.bvh, *world.lights,
+                                        integrator::PathOptions());
+    integrator::PathStats stats;
 
     int rays = 0, partial = 0;
     double worst_left = 0, worst_seen = 0;
@@ -366,4 +367,4 @@ TEST(Coverage, OfMaskIsThatOfEachPoseAndPaint) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

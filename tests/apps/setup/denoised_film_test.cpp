@@ -8,7 +8,7 @@
 
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 constexpr V2i kFrame{96, 96};
@@ -29,7 +29,7 @@ std::shared_ptr<const DenoisedFilm> denoised_even_light(uint32_t seed, float cha
                 film.add(x, y, i, sample);
             }
         }
-    TbbExecutor executor(1);
+    integrator::TbbExecutor executor(1);
     return denoised_film(film, executor, false);
 }
 
@@ -101,4 +101,4 @@ TEST(DenoisedError, SaysAtMostWhereItIsBelowItsOwnNoise) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -6,7 +6,7 @@
 
 #include "tests/support/tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 std::vector<double> shares(std::initializer_list<std::pair<int, double>> parts) {
@@ -90,15 +90,16 @@ class FindExposure : public testing::Test {
     TempFolder folder_;
 
     FoundExposure find(const TinyGltf& file, const std::function<void(SceneRequest&)>& change = {},
-                       const PathOptions& options = {}, uint32_t seed = 0, int threads = 2) {
-        TbbExecutor executor(threads);
+                       const integrator::PathOptions& options = {}, uint32_t seed = 0,
+                       int threads = 2) {
+        integrator::TbbExecutor executor(threads);
         SceneRequest request;
         request.scene = file.save_glb(folder_.path / "scene.glb");
         request.size = {160, 90};
         request.camera.look_at = {V3f(0, 0, 3), V3f(0, 0, 0)};
         if (change) change(request);
         const RenderSetup setup = set_up_render(request, [](const std::string&) {});
-        RenderJob job;
+        integrator::RenderJob job;
         job.seed = seed;
         return find_exposure(setup, job, options, executor);
     }
@@ -128,7 +129,7 @@ TEST_F(FindExposure, MetersTheSceneAndNotWhatIsBehindIt) {
     // At 10 nits; the pixels of its rim show less.
     EXPECT_NEAR(find(glow(0.8f, 10), sky(0)).ev, -5.7f, 0.15f);
     EXPECT_NEAR(find(glow(0.8f, 10), sky(0.01f)).ev, -5.7f, 0.15f);
-    PathOptions transparent;
+    integrator::PathOptions transparent;
     transparent.transparent = true;
     EXPECT_NEAR(find(glow(0.8f, 10), sky(0.01f), transparent).ev, -5.7f, 0.15f);
     // Hardly any pixel shows the scene: the background counts.
@@ -178,4 +179,4 @@ TEST_F(FindExposure, FollowsFromTheFrameAndTheSeedAlone) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using test::diffuse_material;
@@ -36,7 +36,7 @@ struct Covered {
 
 /// Part of the picture that a scene covers, through a pinhole at the frame's place.
 Covered covered(const Scene& scene, const std::array<V3f, 2>& aim, float yfov_rad, float aspect) {
-    const M44f to_camera = look_at(aim[0], aim[1]).inverse();
+    const M44f to_camera = camera::look_at(aim[0], aim[1]).inverse();
     const float slope = std::tan(yfov_rad / 2);
     Covered out;
     for (uint32_t i = 0; i < scene.instances.size(); ++i)
@@ -160,4 +160,4 @@ TEST(Framing, StandsBackForALensThatIsFocusedNear) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -4,10 +4,10 @@
 
 #include "apps/setup/ghosts.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
-const Notice kQuiet = [](const std::string&) {};
+const io::Notice kQuiet = [](const std::string&) {};
 
 SceneRequest low_sun() {
     SceneRequest out;
@@ -15,7 +15,7 @@ SceneRequest low_sun() {
     out.size = {48, 32};
     out.camera.lens = "double-gauss-100mm-f2";
     out.camera.focus = FocusDistance{9};
-    out.camera.coating = Coating::MgF2;
+    out.camera.coating = camera::Coating::MgF2;
     return out;
 }
 
@@ -24,12 +24,12 @@ bool same_samples(const RenderSetup& a, const RenderSetup& b) {
     int rays = 0;
     for (uint32_t i = 0; i < 4000; ++i) {
         const Sampler sampler(SamplerKind::Owen, 1, {0, 0, i});
-        const FilmPoint at{sampler.get2(Dim::Film), sampler};
-        const CameraSample of_a = a.view.camera->sample(at, Bands::rgb()),
-                           of_b = b.view.camera->sample(at, Bands::rgb());
+        const camera::FilmPoint at{sampler.get2(Dim::Film), sampler};
+        const camera::CameraSample of_a = a.view.camera->sample(at, Bands::rgb()),
+                                   of_b = b.view.camera->sample(at, Bands::rgb());
         if (of_a.size() != of_b.size()) return false;
         for (size_t k = 0; k < of_a.size(); ++k) {
-            const CameraPath &one = of_a[k], &other = of_b[k];
+            const camera::CameraPath &one = of_a[k], &other = of_b[k];
             if (one.ray.origin != other.ray.origin || one.ray.direction != other.ray.direction ||
                 one.weight[0] != other.weight[0] || one.mis_weight != other.mis_weight)
                 return false;
@@ -53,9 +53,9 @@ TEST(GhostsSetup, AnotherViewTakesThemWhereTheyAreTheSame) {
     };
     expect(true, [](SceneRequest&) {});
     expect(true, [](SceneRequest& s) { s.size = {30, 20}; });
-    expect(true, [](SceneRequest& s) { s.camera.dispersion = DispersionMode::Shared; });
+    expect(true, [](SceneRequest& s) { s.camera.dispersion = camera::DispersionMode::Shared; });
     expect(true, [](SceneRequest& s) { s.camera.ghosts = GhostUse::Only; });
-    expect(false, [](SceneRequest& s) { s.camera.coating = Coating::Uncoated; });
+    expect(false, [](SceneRequest& s) { s.camera.coating = camera::Coating::Uncoated; });
     expect(false, [](SceneRequest& s) { s.camera.focus = FocusDistance{5}; });
     expect(false, [](SceneRequest& s) { s.camera.fstop = 8; });
     expect(false, [](SceneRequest& s) { s.camera.aperture = "star:5"; });
@@ -69,7 +69,7 @@ TEST(GhostsSetup, ViewsWithoutThemHaveNone) {
     const RenderSetup first = set_up_render(low_sun(), kQuiet);
     SceneRequest off = low_sun(), ideal = low_sun();
     off.camera.ghosts = GhostUse::Off;
-    ideal.camera.coating = Coating::Ideal;
+    ideal.camera.coating = camera::Coating::Ideal;
     for (const SceneRequest& without : {off, ideal}) {
         const RenderSetup view = set_up_view(first, without, kQuiet);
         EXPECT_EQ(view.view.ghosts, nullptr);
@@ -87,7 +87,7 @@ TEST(GhostsSetup, LampsThatShineIntoTheLensAreCounted) {
                                *setup.prepared.bvh);
     };
     EXPECT_EQ(lamps([](SceneRequest&) {}), 1u);
-    EXPECT_EQ(lamps([](SceneRequest& s) { s.camera.coating = Coating::Ideal; }), 1u);
+    EXPECT_EQ(lamps([](SceneRequest& s) { s.camera.coating = camera::Coating::Ideal; }), 1u);
     // It looks the other way, and as a thin lens.
     EXPECT_EQ(lamps([](SceneRequest& s) {
                   s.camera.look_at = std::array{V3f(0, 2, 0), V3f(0, 2, 9)};
@@ -96,7 +96,7 @@ TEST(GhostsSetup, LampsThatShineIntoTheLensAreCounted) {
     EXPECT_EQ(lamps([](SceneRequest& s) {
                   s.camera.lens = "thin";
                   s.camera.fstop = 2.f;
-                  s.camera.coating = Coating::Ideal;
+                  s.camera.coating = camera::Coating::Ideal;
               }),
               0u);
 }
@@ -120,4 +120,4 @@ TEST(GhostsSetup, TheSearchEndsWhereItIsNotWanted) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

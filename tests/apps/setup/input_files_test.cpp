@@ -5,7 +5,7 @@
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Not by way of the program: where it failed, the file would be lost.
@@ -13,12 +13,12 @@ TEST(InputFiles, ThoseOfPetzvalItselfAreAmongThem) {
     for (const char* name : {"/color/config.ocio", "/glass/catalog.csv", "/spectra/d65.csv",
                              "/lenses/tessar-100mm-f2.8.json"})
         EXPECT_THROW(
-            refuse_overwriting({{"--stats", std::string(PETZVAL_ASSETS) + name}}, own_files()),
-            ArgumentError)
+            io::refuse_overwriting({{"--stats", std::string(PETZVAL_ASSETS) + name}}, own_files()),
+            io::ArgumentError)
             << name;
-    EXPECT_NO_THROW(refuse_overwriting(
+    EXPECT_NO_THROW(io::refuse_overwriting(
         {{"--stats", std::string(PETZVAL_ASSETS) + "/spectra/none.csv"}}, own_files()));
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

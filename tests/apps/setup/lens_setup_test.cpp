@@ -7,17 +7,17 @@
 
 #include <cmath>
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 // Where the rays of points near the middle of the film cross the axis, in metres in front of the
 // camera's node. The middle of a narrow iris's image is the pupil's.
-double pupil_m(const Camera& camera) {
+double pupil_m(const camera::Camera& camera) {
     double sum = 0;
     constexpr uint32_t kRays = 4096;
     for (uint32_t i = 0; i < kRays; ++i) {
-        const FilmPoint at{{0.75f, 0.5f}, Sampler(SamplerKind::Owen, 3, {0, 0, i})};
-        const CameraSample seen = camera.sample(at, Bands::rgb());
+        const camera::FilmPoint at{{0.75f, 0.5f}, Sampler(SamplerKind::Owen, 3, {0, 0, i})};
+        const camera::CameraSample seen = camera.sample(at, Bands::rgb());
         EXPECT_EQ(seen.size(), 1u);
         const Ray& ray = seen[0].ray;
         sum += double(ray.origin.z) -
@@ -44,7 +44,7 @@ TEST(LensSetup, PixelsOfTheFilmNarrowAsTheFilmGoesBack) {
         const auto camera = viewfinder(loaded, M44f(), focus_m);
         double sum = 0;
         for (uint32_t i = 0; i < 1024; ++i) {
-            const FilmPoint at{{0.9f, 0.5f}, Sampler(SamplerKind::Owen, 3, {0, 0, i})};
+            const camera::FilmPoint at{{0.9f, 0.5f}, Sampler(SamplerKind::Owen, 3, {0, 0, i})};
             const V3f d = camera->sample(at, Bands::rgb())[0].ray.direction;
             sum += double(d.x) / -double(d.z) / 1024;
         }
@@ -55,4 +55,4 @@ TEST(LensSetup, PixelsOfTheFilmNarrowAsTheFilmGoesBack) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -7,7 +7,7 @@
 #include "tests/support/set_up_observer.h"
 #include "tests/support/traced_world.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using test::diffuse_material;
@@ -20,7 +20,7 @@ using World = test::TracedWorld;
 TEST(MeasuredReflectance, MetalsReflectAsTheirIndicesSay) {
     const Observer observer = observer_of({});
     for (const char* name : {"ag", "al", "au", "cu"}) {
-        const Metal metal = *find_metal(name);
+        const Metal metal = *io::find_metal(name);
         World world;
         Material m;
         m.roughness = 0;
@@ -54,7 +54,7 @@ TEST(MeasuredReflectance, MetalsReflectAsTheirIndicesSay) {
 TEST(MeasuredReflectance, AMeasuredReflectanceIsTheBaseColour) {
     World world;
     Scene& scene = world.scene;
-    scene.reflectances.push_back(*find_reflectance("colorchecker:yellow"));
+    scene.reflectances.push_back(*io::find_reflectance("colorchecker:yellow"));
     Material m = diffuse_material(0.f);
     m.reflectance = 0;
     m.base_color = scene.reflectances[0].rgb;
@@ -90,4 +90,4 @@ TEST(MeasuredReflectance, AMeasuredReflectanceIsTheBaseColour) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,7 +9,7 @@
 #include "tests/support/blurred.h"
 #include "tests/support/moving_gltf.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using namespace test;
@@ -56,8 +56,8 @@ struct Saved {
     }
     [[nodiscard]] SceneRequest at(double time_s, bool opens) const {
         SceneRequest out = request;
-        out.choices.animation = AnimationChoice{time_s, {}, false, opens ? kMomentOpen_s : 0};
-        if (opens) out.camera.shutter_curve = ShutterCurve::box();
+        out.choices.animation = io::AnimationChoice{time_s, {}, false, opens ? kMomentOpen_s : 0};
+        if (opens) out.camera.shutter_curve = camera::ShutterCurve::box();
         return out;
     }
 };
@@ -68,18 +68,18 @@ RenderSetup set_up(const SceneRequest& request) {
 
 std::vector<float> picture(const RenderSetup& setup, uint32_t spp, uint32_t seed) {
     const PreparedScene& p = setup.prepared;
-    PathOptions options;
+    integrator::PathOptions options;
     options.max_depth = 2;
-    const PathTracer<> tracer(*p.scene, *p.bvh, *p.lights, options);
-    RenderJob job;
+    const integrator::PathTracer<> tracer(*p.scene, *p.bvh, *p.lights, options);
+    integrator::RenderJob job;
     job.end_sample = spp;
     job.seed = seed;
     job.observer = setup.view.observer;
     job.filter = Filter(FilterKind::Box, 0.5f);
     Film film(kSmall_px, {0, 0, kSmall_px.x, kSmall_px.y}, {});
-    ThreadExecutor executor(1);
-    RenderMonitor monitor;
-    (void)render(tracer, *setup.view.camera, job, film, executor, monitor);
+    integrator::ThreadExecutor executor(1);
+    integrator::RenderMonitor monitor;
+    (void)integrator::render(tracer, *setup.view.camera, job, film, executor, monitor);
     std::vector<float> out;
     for (int y = 0; y < kSmall_px.y; ++y)
         for (int x = 0; x < kSmall_px.x; ++x) out.push_back(film.colour(x, y)[1]);
@@ -196,7 +196,7 @@ TEST(MotionSetup, AThinLensThatZoomsGivesTheMeanOfItsStills) {
     saved.request.camera.iso = 1e4f;
     saved.request.targets = TargetUse::Auto;  // none for such a camera
     expect_mean_of_stills(saved);
-    EXPECT_EQ(target_camera(set_up(saved.at(kMoment_s, true)).view.still), nullptr);
+    EXPECT_EQ(camera::target_camera(set_up(saved.at(kMoment_s, true)).view.still), nullptr);
 }
 
 /// The light of a wall's part above a height, through a camera whose angle of view grows evenly.
@@ -278,9 +278,9 @@ TEST(MotionSetup, AnAngleThatTheUserGivesDoesNotZoom) {
     const Saved saved(zooming(kPerspective, kYfov, 0.3f, 1.3f));
     SceneRequest asked = saved.at(kMoment_s, true);
     asked.camera.fov_deg = 40;
-    EXPECT_NE(dynamic_cast<const ThinLensCamera*>(set_up(asked).view.still.get()), nullptr);
+    EXPECT_NE(dynamic_cast<const camera::ThinLensCamera*>(set_up(asked).view.still.get()), nullptr);
     asked.camera.fov_deg = {};
-    EXPECT_EQ(dynamic_cast<const ThinLensCamera*>(set_up(asked).view.still.get()), nullptr);
+    EXPECT_EQ(dynamic_cast<const camera::ThinLensCamera*>(set_up(asked).view.still.get()), nullptr);
 }
 
 TEST(MotionSetup, NothingThatMovesHasNoShutter) {
@@ -301,9 +301,9 @@ TEST(MotionSetup, LightSharesAreThoseOfTheMovingCamera) {
     const Scene& scene = *open.prepared.scene;
     const LightChoice before(scene, LightChoiceKind::Tree);
     ASSERT_TRUE(before.divides());
-    const auto learned = [&](const Camera& camera) {
-        const LightChoice fitted = fitted_by_pilot(before, scene, *open.prepared.bvh, camera,
-                                                   open.view.observer, kSmall_px);
+    const auto learned = [&](const camera::Camera& camera) {
+        const LightChoice fitted = integrator::fitted_by_pilot(
+            before, scene, *open.prepared.bvh, camera, open.view.observer, kSmall_px);
         const auto factors = fitted.shares().factors();
         return std::vector<float>(factors.begin(), factors.end());
     };
@@ -314,4 +314,4 @@ TEST(MotionSetup, LightSharesAreThoseOfTheMovingCamera) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

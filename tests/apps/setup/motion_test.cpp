@@ -9,36 +9,36 @@
 #include "tests/support/blurred.h"
 #include "tests/support/lens_cameras.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using namespace test;
 
-std::unique_ptr<Camera> pinhole(const M44f& to_world) {
-    ThinLens lens;
+std::unique_ptr<camera::Camera> pinhole(const M44f& to_world) {
+    camera::ThinLens lens;
     lens.to_world = to_world;
     lens.yfov_rad = 0.8f;
     lens.aspect = 4.f / 3;
-    return std::make_unique<ThinLensCamera>(lens);
+    return std::make_unique<camera::ThinLensCamera>(lens);
 }
 
-std::unique_ptr<Camera> thin_lens(const M44f& to_world) {
-    ThinLens lens;
+std::unique_ptr<camera::Camera> thin_lens(const M44f& to_world) {
+    camera::ThinLens lens;
     lens.to_world = to_world;
     lens.yfov_rad = 0.8f;
     lens.aspect = 1;
-    lens.iris = Iris(Disk{}, 60);
+    lens.iris = camera::Iris(camera::Disk{}, 60);
     lens.focus_m = 3;
-    return std::make_unique<ThinLensCamera>(lens);
+    return std::make_unique<camera::ThinLensCamera>(lens);
 }
 
-std::unique_ptr<Camera> traced_lens(const M44f& to_world) {
-    LensCameraInput in = input_of(kGauss, DispersionMode::Shared);
+std::unique_ptr<camera::Camera> traced_lens(const M44f& to_world) {
+    camera::LensCameraInput in = input_of(kGauss, camera::DispersionMode::Shared);
     in.to_world = to_world;
-    return std::make_unique<LensCamera>(in);
+    return std::make_unique<camera::LensCamera>(in);
 }
 
-const M44f kStand = look_at(V3f(0, 0.6f, 4), V3f(0, 0.3f, 0));
+const M44f kStand = camera::look_at(V3f(0, 0.6f, 4), V3f(0, 0.3f, 0));
 
 /// A floor, a wall, and a lamp at a point.
 Motion room() {
@@ -100,7 +100,9 @@ TEST(MotionBlur, OfAThingThatDeformsOnItsFlight) {
 
 // A lamp that grows and turns its one bright side away, by all ways to its light.
 TEST(MotionBlur, OfALampByEveryTechnique) {
-    for (const Technique technique : {Technique::Mis, Technique::LightOnly, Technique::BsdfOnly}) {
+    for (const integrator::Technique technique :
+         {integrator::Technique::Mis, integrator::Technique::LightOnly,
+          integrator::Technique::BsdfOnly}) {
         Motion motion = room();
         motion.options.technique = technique;
         Material lamp = emitter_material(12.f);
@@ -110,7 +112,8 @@ TEST(MotionBlur, OfALampByEveryTechnique) {
                          return turned(V3f(0.3f, 0, 3 * time), V3f(2 * time - 1, 1.2f, 0),
                                        V3f(0.3f + 1.4f * time));
                      }));
-        expect_bands_mean_of_stills(motion, technique == Technique::BsdfOnly ? 192 : 96);
+        expect_bands_mean_of_stills(motion,
+                                    technique == integrator::Technique::BsdfOnly ? 192 : 96);
     }
 }
 
@@ -183,14 +186,14 @@ TEST(MotionBlur, OfACameraThatMoves) {
 }
 
 /// Focused before what it shows, so that rays of a pixel go far apart.
-std::unique_ptr<Camera> blurring_lens(const M44f& to_world) {
-    ThinLens lens;
+std::unique_ptr<camera::Camera> blurring_lens(const M44f& to_world) {
+    camera::ThinLens lens;
     lens.to_world = to_world;
     lens.yfov_rad = 0.5f;
     lens.aspect = 1;
-    lens.iris = Iris(Disk{}, 60);
+    lens.iris = camera::Iris(camera::Disk{}, 60);
     lens.focus_m = 1.2f;
-    return std::make_unique<ThinLensCamera>(lens);
+    return std::make_unique<camera::ThinLensCamera>(lens);
 }
 
 // Rays to a lamp that flies, and of a camera that moves away from where they were aimed.
@@ -200,7 +203,8 @@ TEST(MotionBlur, WithRaysToTargets) {
         motion.camera = traced ? traced_lens : blurring_lens;
         motion.size = V2i(16, 16);
         motion.camera_steps = at_steps(2, [](float time) {
-            return look_at(V3f(0.8f * time - 0.4f, 0.5f, 4), V3f(0.8f * time - 0.4f, 0.35f, 0));
+            return camera::look_at(V3f(0.8f * time - 0.4f, 0.5f, 4),
+                                   V3f(0.8f * time - 0.4f, 0.35f, 0));
         });
         const float size = traced ? 0.15f : 1;  // the traced lens blurs less
         place_moving(motion.scene, sphere(V3f(0.f), 0.03f * size, 6, true),
@@ -209,8 +213,8 @@ TEST(MotionBlur, WithRaysToTargets) {
                      }));
         Scene finished = motion.scene;
         finish_scene(finished);
-        auto aims = target_camera(middle_camera(motion));
-        aims->set_targets(find_targets(*aims, motion.size, small_features_of(finished)));
+        auto aims = camera::target_camera(middle_camera(motion));
+        aims->set_targets(camera::find_targets(*aims, motion.size, small_features_of(finished)));
         ASSERT_NE(aims->targets(), nullptr) << traced;
         EXPECT_TRUE(same_picture(blurred(motion, *shuttered(motion, std::move(aims)), 96),
                                  of_stills(motion, 8)))
@@ -328,7 +332,7 @@ TEST(MotionBlur, GivesTheSameBytesForAnyThreadsAndTiles) {
     Motion motion = lit_room();
     motion.camera_steps = camera_flight();
     motion.size = V2i(24, 16);
-    motion.curve = ShutterCurve::trapezoid();
+    motion.curve = camera::ShutterCurve::trapezoid();
     Mesh soft = sphere(V3f(0.f), 0.5f, 8, true);
     deform(soft, 3, [](const V3f& p, float time) { return p * (0.5f + time); });
     place_moving(motion.scene, soft, emitter_material(2.f, 0.5f), at_steps(9, swings));
@@ -349,4 +353,4 @@ TEST(MotionBlur, OfNothingThatMovesIsTheStill) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

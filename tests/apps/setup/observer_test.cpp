@@ -11,7 +11,7 @@
 #include "tests/support/set_up_observer.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using test::observer_of;
@@ -148,9 +148,9 @@ TEST(Observer, BinsGetHalfOfTheWavelengths) {
 // Three narrow lines and a bin far from them: XYZ needs wavelengths where neither is.
 TEST(Observer, XyzOfASensorThatIsNearlyBlind) {
     ObserverInput in;
-    in.xyz_bar = standard_observer();
-    in.white = find_illuminant("d65");
-    in.basis = rgb_basis();
+    in.xyz_bar = io::standard_observer();
+    in.white = io::find_illuminant("d65");
+    in.basis = io::rgb_basis();
     for (const int i : {0, 1, 2}) in.response[size_t(i)].at_nm(600 - 75 * i) = 1;
     in.matrix = {V3f(1, 0, 0), V3f(0, 1, 0), V3f(0, 0, 1)};
     in.bins = Bins{500, 10, 1};
@@ -200,8 +200,8 @@ TEST(Observer, OneLaneIsAnEstimateOfItsOwn) {
 
 // The eye's own curves, mixed: the fit must take the mixture apart again.
 TEST(SensorFit, UndoesAMixtureOfTheEyesCurves) {
-    const auto xyz_bar = standard_observer();
-    const SpectrumTable light = find_illuminant("a");
+    const auto xyz_bar = io::standard_observer();
+    const SpectrumTable light = io::find_illuminant("a");
     std::array<SpectrumTable, 3> mixed;
     for (size_t i = 0; i < light.value.size(); ++i) {
         const float x = xyz_bar[0].value[i], y = xyz_bar[1].value[i], z = xyz_bar[2].value[i];
@@ -210,7 +210,7 @@ TEST(SensorFit, UndoesAMixtureOfTheEyesCurves) {
         mixed[2].value[i] = z + 0.1f * x;
     }
     const Matrix3 to_rgb = srgb_to_xyz(V3d(0.9505, 1, 1.0888)).inverse();
-    const SensorFit fit = fit_sensor(mixed, xyz_bar, light, to_rgb, training_reflectances());
+    const SensorFit fit = fit_sensor(mixed, xyz_bar, light, to_rgb, io::training_reflectances());
     EXPECT_LT(fit.worst_delta_e, 1e-3);
     const V3d xyz(0.3, 0.4, 0.2);
     const V3d seen(3 * xyz.x + xyz.y, xyz.y + 0.5 * xyz.z, xyz.z + 0.1 * xyz.x);
@@ -219,8 +219,8 @@ TEST(SensorFit, UndoesAMixtureOfTheEyesCurves) {
 
 // Curves that no matrix makes into the eye's leave a residual, but not on white.
 TEST(SensorFit, WhiteIsExactWhateverTheCurves) {
-    const auto xyz_bar = standard_observer();
-    const SpectrumTable light = find_illuminant("d65");
+    const auto xyz_bar = io::standard_observer();
+    const SpectrumTable light = io::find_illuminant("d65");
     std::array<SpectrumTable, 3> bands;
     for (int nm = kFirst_nm; nm <= kLast_nm; ++nm) {
         bands[0].at_nm(nm) = nm > 580 && nm < 700 ? 0.8f : 0.f;
@@ -229,7 +229,7 @@ TEST(SensorFit, WhiteIsExactWhateverTheCurves) {
     }
     const V3d white = respond(xyz_bar, light);
     const Matrix3 to_rgb = srgb_to_xyz(white / white.y).inverse();
-    const SensorFit fit = fit_sensor(bands, xyz_bar, light, to_rgb, training_reflectances());
+    const SensorFit fit = fit_sensor(bands, xyz_bar, light, to_rgb, io::training_reflectances());
     const V3d seen = fit.matrix * respond(bands, light), meant = to_rgb * white;
     expect_near(seen / white.y, meant / white.y, 1e-9);
     EXPECT_GT(fit.worst_delta_e, fit.mean_delta_e);
@@ -238,9 +238,9 @@ TEST(SensorFit, WhiteIsExactWhateverTheCurves) {
 
     bands[2] = bands[1];
     EXPECT_THROW(
-        static_cast<void>(fit_sensor(bands, xyz_bar, light, to_rgb, training_reflectances())),
+        static_cast<void>(fit_sensor(bands, xyz_bar, light, to_rgb, io::training_reflectances())),
         std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

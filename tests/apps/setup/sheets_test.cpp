@@ -7,7 +7,7 @@
 #include "integrator/path/front_at_back.h"
 #include "tests/support/load_tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using Json = nlohmann::json;
@@ -66,7 +66,7 @@ struct Seen {
     int rays = 0, fronts = 0;
 };
 Seen seen(const TinyGltf& file) {
-    GltfFile loaded = load(file);
+    io::GltfFile loaded = load(file);
     Scene& scene = loaded.scene;
     finish_scene(scene);
     const Bvh bvh(scene, Traversal::Robust);
@@ -84,7 +84,7 @@ Seen seen(const TinyGltf& file) {
                 const auto hit = bvh.intersect(ray);
                 if (!hit) continue;
                 const Surface s = make_surface(scene, ray.direction, *hit);
-                out.fronts += s.front || front_at_back(scene, bvh, ray, s);
+                out.fronts += s.front || integrator::front_at_back(scene, bvh, ray, s);
             }
         }
     return out;
@@ -152,4 +152,4 @@ TEST(Sheets, ThePoseCounts) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

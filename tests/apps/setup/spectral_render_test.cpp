@@ -16,7 +16,7 @@
 #include "tests/support/statistics.h"
 #include "tests/support/traced_world.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using test::diffuse_material;
@@ -27,18 +27,18 @@ using test::quad;
 using test::sphere;
 using World = test::TracedWorld;
 
-Film render_film(const World& world, const Camera& camera, V2i size, const RenderJob& job,
-                 int threads = 2) {
+Film render_film(const World& world, const camera::Camera& camera, V2i size,
+                 const integrator::RenderJob& job, int threads = 2) {
     Film film(size, {0, 0, size.x, size.y}, {}, job.observer.bins());
-    ThreadExecutor executor(threads);
-    RenderMonitor monitor;
-    static_cast<void>(render(*world.tracer, camera, job, film, executor, monitor));
+    integrator::ThreadExecutor executor(threads);
+    integrator::RenderMonitor monitor;
+    static_cast<void>(integrator::render(*world.tracer, camera, job, film, executor, monitor));
     EXPECT_EQ(film.left_out().count(), 0u);
     return film;
 }
 
-RenderJob job_of(const Observer& observer, uint32_t spp) {
-    RenderJob job;
+integrator::RenderJob job_of(const Observer& observer, uint32_t spp) {
+    integrator::RenderJob job;
     job.observer = observer;
     job.end_sample = spp;
     job.filter = Filter(FilterKind::Box, 0.5f);
@@ -47,13 +47,13 @@ RenderJob job_of(const Observer& observer, uint32_t spp) {
 }
 
 V3d srgb_to_lab(const V3d& rgb) {
-    const V3d white = respond(standard_observer(), find_illuminant("d65"));
+    const V3d white = respond(io::standard_observer(), io::find_illuminant("d65"));
     const V3d white1 = white / white.y;
     return xyz_to_lab(srgb_to_xyz(white1) * rgb, white1);
 }
 
 // Looks along -z at the square [0, width] x [0, height] of the plane z = 0.
-OrthographicCamera above(float width, float height) {
+camera::OrthographicCamera above(float width, float height) {
     M44f to_world;
     to_world.translate(V3f(width / 2, height / 2, 5));
     return {to_world, width / 2, height / 2};
@@ -62,10 +62,10 @@ OrthographicCamera above(float width, float height) {
 // Every patch of a colour chart is a lamp that shines as the patch under D65 would: what hero
 // wavelengths make of it against the sum over all wavelengths.
 TEST(SpectralRender, ColourCheckerSpectraAgainstDirectIntegration) {
-    const std::vector<SpectrumTable> patches = training_reflectances();
+    const std::vector<SpectrumTable> patches = io::training_reflectances();
     ASSERT_EQ(patches.size(), 24u);
-    const auto xyz_bar = standard_observer();
-    const SpectrumTable d65 = find_illuminant("d65");
+    const auto xyz_bar = io::standard_observer();
+    const SpectrumTable d65 = io::find_illuminant("d65");
     const V3d white = respond(xyz_bar, d65);
     World world;
     std::vector<V3d> expected;
@@ -104,13 +104,13 @@ TEST(SpectralRender, ColourCheckerSpectraAgainstDirectIntegration) {
 // RGB patches under a sky of 1 nit: up to spectra and back. The cyan patch (index 17) lies outside
 // sRGB, so that no RGB says it.
 TEST(SpectralRender, ColourCheckerRgbThroughUpliftAndBack) {
-    const auto xyz_bar = standard_observer();
-    const SpectrumTable d65 = find_illuminant("d65");
+    const auto xyz_bar = io::standard_observer();
+    const SpectrumTable d65 = io::find_illuminant("d65");
     const V3d white = respond(xyz_bar, d65);
     const Matrix3 to_rgb = srgb_to_xyz(white / white.y).inverse();
     World world;
     std::vector<V3d> colours;
-    for (const SpectrumTable& patch : training_reflectances()) {
+    for (const SpectrumTable& patch : io::training_reflectances()) {
         SpectrumTable reflected;
         for (size_t k = 0; k < d65.value.size(); ++k)
             reflected.value[k] = patch.value[k] * d65.value[k];
@@ -149,7 +149,7 @@ Material glass_material(const char* name, float roughness) {
     m.roughness = roughness;
     m.transmission = 1;
     m.has_volume = true;
-    m.glass = LensGlasses({}).find(name);
+    m.glass = io::LensGlasses({}).find(name);
     m.ior = static_cast<float>(m.glass->index(kLineD_nm));
     return m;
 }
@@ -169,7 +169,7 @@ std::array<test::Moments, 4> furnace(const World& world, const Observer& observe
             ray.origin = V3f(0, 0, 4);
             ray.direction = unit(V3f(u.x - 0.5f, u.y - 0.5f, 0) - ray.origin);
             FilmSample out;
-            PathStats stats;
+            integrator::PathStats stats;
             const f4 seen = world.tracer->radiance({ray}, bands, sampler, out, stats);
             for (int lane = 0; lane < 4; ++lane) {
                 const auto k = static_cast<size_t>(
@@ -295,11 +295,11 @@ void add_wavelength_scene(World& world) {
     Material gold;
     gold.roughness = 0.3f;
     gold.metal = 0;
-    scene.metals.push_back(*find_metal("au"));
+    scene.metals.push_back(*io::find_metal("au"));
     place(scene, sphere(V3f(0, 0.6f, -1), 0.6f, 16, true), gold);
     Material lamp = emitter_material(6.f);
     lamp.illuminant = 0;
-    scene.illuminants.push_back(*find_light_spectrum("a"));
+    scene.illuminants.push_back(*io::find_light_spectrum("a"));
     place(scene, quad(V3f(-1, 2, -1), V3f(2, 0, 0), V3f(0, 0, 2)), lamp);
     scene.sky = Sky::uniform(Rgb(0.2f, 0.3f, 0.5f));
 }
@@ -311,11 +311,11 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
     add_wavelength_scene(world);
     world.finish(12);
     const Observer observer = observer_of({}, world.scene);
-    ThinLens lens;
-    lens.to_world = look_at(V3f(0, 0.3f, 4), V3f(0, 0, 0));
+    camera::ThinLens lens;
+    lens.to_world = camera::look_at(V3f(0, 0.3f, 4), V3f(0, 0, 0));
     lens.aspect = 1;
     lens.yfov_rad = 0.8f;
-    const ThinLensCamera camera(lens);
+    const camera::ThinLensCamera camera(lens);
     constexpr int side = 5;
     constexpr uint32_t replicates = 16, hero_samples = 512, single_samples = 2048;
     const auto estimate = [&](uint32_t samples, uint32_t seed0, const auto& bands_of) {
@@ -327,9 +327,9 @@ TEST(SpectralRender, HeroAgreesWithOneWavelengthAPath) {
                     const Sampler sampler(SamplerKind::Owen, seed0 + seed, {p, 0, i});
                     const Bands bands = bands_of(sampler.get1(Dim::Wavelength));
                     const V2f at = (V2f(p % side, p / side) + sampler.get2(Dim::Film)) / side;
-                    const CameraSample seen = camera.sample({at, sampler}, bands);
+                    const camera::CameraSample seen = camera.sample({at, sampler}, bands);
                     FilmSample out;
-                    PathStats stats;
+                    integrator::PathStats stats;
                     const f4 radiance =
                         world.tracer->radiance({seen[0].ray, seen[0].lanes, seen[0].hero_decided},
                                                bands, sampler, out, stats);
@@ -385,7 +385,7 @@ TEST(SpectralRender, ARoughPrismAgreesWithOneWavelengthAPath) {
                 const Sampler sampler(SamplerKind::Owen, seed, {0, 0, i});
                 const Bands bands = bands_of(sampler.get1(Dim::Wavelength));
                 FilmSample film;
-                PathStats stats;
+                integrator::PathStats stats;
                 sum += to_rgb(world.tracer->radiance({ray, bands.on, false}, bands, sampler, film,
                                                      stats),
                               bands) *
@@ -413,10 +413,10 @@ TEST(SpectralRender, SameBytesForAnyNumberOfThreads) {
     world.finish();
     SpectralRequest request;
     request.bins = Bins{400, 50, 6};
-    const RenderJob job = job_of(observer_of(request, world.scene), 16);
-    ThinLens lens;
-    lens.to_world = look_at(V3f(0, 0.3f, 4), V3f(0, 0, 0));
-    const ThinLensCamera camera(lens);
+    const integrator::RenderJob job = job_of(observer_of(request, world.scene), 16);
+    camera::ThinLens lens;
+    lens.to_world = camera::look_at(V3f(0, 0.3f, 4), V3f(0, 0, 0));
+    const camera::ThinLensCamera camera(lens);
     const V2i size(24, 16);
     const Film one = render_film(world, camera, size, job, 1);
     const Film four = render_film(world, camera, size, job, 4);
@@ -434,4 +434,4 @@ TEST(SpectralRender, SameBytesForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

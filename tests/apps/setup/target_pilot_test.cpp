@@ -12,7 +12,7 @@
 #include "camera/targets/target_grid.h"
 #include "tests/support/scenes.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using namespace test;
@@ -23,14 +23,14 @@ constexpr float kFar_m = 3;
 /// Two lamps whose discs overlap, and are a cell wide.
 const V3f kOne(0.02f, 0.05f, -kFar_m), kOther(0.08f, 0.05f, -kFar_m);
 
-ThinLensCamera wide_lens() {
-    ThinLens lens;
-    lens.to_world = look_at(V3f(0, 0, 0), V3f(0, 0, -1));
+camera::ThinLensCamera wide_lens() {
+    camera::ThinLens lens;
+    lens.to_world = camera::look_at(V3f(0, 0, 0), V3f(0, 0, -1));
     lens.yfov_rad = 0.3f;
     lens.aspect = 4.f / 3;
-    lens.iris = Iris(Disk{}, 50);
+    lens.iris = camera::Iris(camera::Disk{}, 50);
     lens.focus_m = 1;
-    return ThinLensCamera(lens);
+    return camera::ThinLensCamera(lens);
 }
 
 void place_lamp(Scene& scene, const V3f& at, float nits) {
@@ -46,24 +46,25 @@ void hide(Scene& scene, const V3f& lamp) {
 }
 
 struct Grids {
-    std::shared_ptr<const TargetGrid> all, paying;
+    std::shared_ptr<const camera::TargetGrid> all, paying;
 };
 Grids grids_of(World& world) {
     world.finish();
-    const auto camera = target_camera(std::make_shared<ThinLensCamera>(wide_lens()));
-    camera->set_targets(find_targets(*camera, kPilot_px, small_features_of(world.scene)));
-    return {camera->targets(),
-            targets_that_pay(*camera, world.scene, *world.bvh, *world.lights, kPilot_px)};
+    const auto camera =
+        camera::target_camera(std::make_shared<camera::ThinLensCamera>(wide_lens()));
+    camera->set_targets(camera::find_targets(*camera, kPilot_px, small_features_of(world.scene)));
+    return {camera->targets(), integrator::targets_that_pay(*camera, world.scene, *world.bvh,
+                                                            *world.lights, kPilot_px)};
 }
 
-bool is_at(const TargetGrid& grid, const ListedTarget& listed, const V3f& lamp) {
+bool is_at(const camera::TargetGrid& grid, const camera::ListedTarget& listed, const V3f& lamp) {
     return (grid.targets[listed.number].centre - lamp).length() < 1e-3f;
 }
-size_t cells_with(const TargetGrid& grid, const V3f& lamp) {
+size_t cells_with(const camera::TargetGrid& grid, const V3f& lamp) {
     return static_cast<size_t>(
         std::count_if(grid.lists.begin(), grid.lists.end(), [&](const auto& list) {
             return std::any_of(list.targets.begin(), list.targets.end(),
-                               [&](const ListedTarget& t) { return is_at(grid, t, lamp); });
+                               [&](const camera::ListedTarget& t) { return is_at(grid, t, lamp); });
         }));
 }
 
@@ -72,10 +73,10 @@ void expect_sane(const Grids& grids) {
     ASSERT_EQ(grids.paying->lists.size(), grids.all->lists.size());
     for (size_t i = 0; i < grids.all->lists.size(); ++i) {
         std::set<uint32_t> found, kept;
-        for (const ListedTarget& t : grids.all->lists[i].targets) found.insert(t.number);
+        for (const camera::ListedTarget& t : grids.all->lists[i].targets) found.insert(t.number);
         double sum = 0;
         const auto& list = grids.paying->lists[i].targets;
-        for (const ListedTarget& t : list) {
+        for (const camera::ListedTarget& t : list) {
             EXPECT_TRUE(kept.insert(t.number).second) << "twice in cell " << i;
             EXPECT_TRUE(found.count(t.number)) << "not of cell " << i;
             EXPECT_GE(t.chance, 0.5f / float(list.size()) - 1e-6f);
@@ -85,7 +86,7 @@ void expect_sane(const Grids& grids) {
         EXPECT_NEAR(sum, 1, 1e-6) << "cell " << i;
         EXPECT_TRUE(grids.paying->lists[i].map) << "cell " << i;
         EXPECT_GE(grids.paying->lists[i].rays, 1u) << "cell " << i;
-        EXPECT_LE(grids.paying->lists[i].rays, TargetCell::kMostRays) << "cell " << i;
+        EXPECT_LE(grids.paying->lists[i].rays, camera::TargetCell::kMostRays) << "cell " << i;
     }
 }
 
@@ -99,10 +100,10 @@ TEST(TargetPilot, BrightTargetsGetMoreRays) {
     ASSERT_NE(grids.paying, nullptr);
     expect_sane(grids);
     int both = 0;
-    for (const TargetCell& cell : grids.paying->lists) {
+    for (const camera::TargetCell& cell : grids.paying->lists) {
         if (cell.targets.size() != 2) continue;
         ++both;
-        for (const ListedTarget& t : cell.targets)
+        for (const camera::ListedTarget& t : cell.targets)
             EXPECT_NEAR(t.chance, is_at(*grids.paying, t, kOther) ? 0.65f : 0.35f, 0.12f);
     }
     EXPECT_GT(both, 0);
@@ -143,4 +144,4 @@ TEST(TargetPilot, NothingThatDoesNotPay) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -13,7 +13,7 @@
 #include "tests/support/statistics.h"
 #include "tests/support/traced_world.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using namespace test;
@@ -28,16 +28,16 @@ constexpr uint32_t kSamples = 64;
 using Means = std::array<Moments, kParts>;
 
 /// Means of parts of the frame, over seeds.
-Means rendered(const TracedWorld& world, const Camera& camera, uint32_t first_seed) {
+Means rendered(const TracedWorld& world, const camera::Camera& camera, uint32_t first_seed) {
     Means out;
     for (uint32_t seed = 0; seed < kSeeds; ++seed) {
-        RenderJob job;
+        integrator::RenderJob job;
         job.end_sample = kSamples;
         job.seed = first_seed + seed;
         Film film(kSize, {0, 0, kSize.x, kSize.y}, {});
-        ThreadExecutor executor(1);
-        RenderMonitor monitor;
-        (void)render(*world.tracer, camera, job, film, executor, monitor);
+        integrator::ThreadExecutor executor(1);
+        integrator::RenderMonitor monitor;
+        (void)integrator::render(*world.tracer, camera, job, film, executor, monitor);
         std::array<double, kParts> sums{};
         for (int y = 0; y < kSize.y; ++y)
             for (int x = 0; x < kSize.x; ++x)
@@ -55,28 +55,28 @@ double noise(const Means& means) {
 }
 
 /// The same means with targets, and less noise. All that is found is used, whether it pays or not.
-void expect_same_mean(TracedWorld& world, const std::shared_ptr<const Camera>& camera, double gain,
-                      const char* what) {
+void expect_same_mean(TracedWorld& world, const std::shared_ptr<const camera::Camera>& camera,
+                      double gain, const char* what) {
     world.finish();
     std::vector<SmallFeature> features = small_features_of(world.scene);
-    const auto images = highlights(*camera, world.scene, *world.bvh, kSize, features);
+    const auto images = integrator::highlights(*camera, world.scene, *world.bvh, kSize, features);
     features.insert(features.end(), images.begin(), images.end());
     const Means without = rendered(world, *camera, 1);
-    const auto aims = target_camera(camera);
-    aims->set_targets(find_targets(*aims, kSize, features));
+    const auto aims = camera::target_camera(camera);
+    aims->set_targets(camera::find_targets(*aims, kSize, features));
     ASSERT_NE(aims->targets(), nullptr) << what;
     const Means with = rendered(world, *aims, 1000);
     EXPECT_GE(least_p(without, with), sidak(kStatisticalTests * static_cast<int>(kParts))) << what;
     EXPECT_LT(noise(with) * gain, noise(without)) << what;
 }
 
-std::shared_ptr<const Camera> thin(float focus_m = 1) {
-    ThinLens lens;
-    lens.to_world = look_at(V3f(0, 0, 0), V3f(0, 0, -1));
+std::shared_ptr<const camera::Camera> thin(float focus_m = 1) {
+    camera::ThinLens lens;
+    lens.to_world = camera::look_at(V3f(0, 0, 0), V3f(0, 0, -1));
     lens.yfov_rad = 0.3f;
-    lens.iris = Iris(Disk{}, 20);
+    lens.iris = camera::Iris(camera::Disk{}, 20);
     lens.focus_m = focus_m;
-    return std::make_shared<ThinLensCamera>(lens);
+    return std::make_shared<camera::ThinLensCamera>(lens);
 }
 
 Material mirror(float roughness) {
@@ -165,10 +165,10 @@ TEST(TargetMeans, AreKeptThroughATracedLens) {
     for (const V2f& at : {V2f(0.1f, 0.05f), V2f(0.62f, 0.4f)}) {
         TracedWorld world;
         place_small_lamp(world.scene, V3f(at.x, at.y, -3), 0.008f);
-        LensCameraInput in = input_of(kTakumar);
-        in.to_world = look_at(V3f(0, 0, 0), V3f(0, 0, -1));
+        camera::LensCameraInput in = input_of(kTakumar);
+        in.to_world = camera::look_at(V3f(0, 0, 0), V3f(0, 0, -1));
         in.film_mm += 3;
-        const auto camera = std::make_shared<LensCamera>(std::move(in));
+        const auto camera = std::make_shared<camera::LensCamera>(std::move(in));
         expect_same_mean(world, camera, 2, "through the Takumar");
     }
 }
@@ -179,8 +179,8 @@ TEST(TargetMeans, LampsThatOrdinaryRaysMeetAreNoTargets) {
         TracedWorld world;
         place(world.scene, sphere(at, 2.f, 24, true), emitter_material(5.f));
         world.finish();
-        const auto camera = target_camera(thin());
-        EXPECT_EQ(find_targets(*camera, kSize, small_features_of(world.scene)), nullptr);
+        const auto camera = camera::target_camera(thin());
+        EXPECT_EQ(camera::find_targets(*camera, kSize, small_features_of(world.scene)), nullptr);
     }
 }
 
@@ -192,13 +192,15 @@ TEST(TargetMeans, AThousandLampsInAPixelAreASanePicture) {
               sphere(V3f(1e-4f * float(i % 32), 1e-4f * float(i / 32), -3), 2e-5f, 3, false),
               emitter_material(1e6f));
     world.finish();
-    const auto camera = target_camera(thin());
-    camera->set_targets(find_targets(*camera, kSize, small_features_of(world.scene, 1024)));
+    const auto camera = camera::target_camera(thin());
+    camera->set_targets(camera::find_targets(*camera, kSize, small_features_of(world.scene, 1024)));
     ASSERT_NE(camera->targets(), nullptr);
-    for (const TargetCell& cell : camera->targets()->lists) EXPECT_LE(cell.targets.size(), 48u);
-    camera->set_targets(targets_that_pay(*camera, world.scene, *world.bvh, *world.lights, kSize));
+    for (const camera::TargetCell& cell : camera->targets()->lists)
+        EXPECT_LE(cell.targets.size(), 48u);
+    camera->set_targets(
+        integrator::targets_that_pay(*camera, world.scene, *world.bvh, *world.lights, kSize));
     for (const Moments& part : rendered(world, *camera, 1)) EXPECT_TRUE(std::isfinite(part.mean()));
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -9,12 +9,12 @@
 #include "core/spectrum/colorimetry.h"
 #include "io/spectra/spectra.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 V3d colour_seen(float film, float thickness_nm, float n, float cosine) {
-    const auto xyz_bar = standard_observer();
-    const SpectrumTable d65 = find_illuminant("d65");
+    const auto xyz_bar = io::standard_observer();
+    const SpectrumTable d65 = io::find_illuminant("d65");
     Bands bands = Bands::rgb();
     bands.spectral = true;
     bands.on = m4{-1, -1, -1, -1};
@@ -53,4 +53,4 @@ TEST(ThinFilmColour, IsThatOfTheObserver) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

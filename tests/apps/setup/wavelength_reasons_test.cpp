@@ -6,7 +6,7 @@
 #include "apps/setup/wavelength_reasons.h"
 #include "tests/support/spectral_gltf.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using namespace test;
@@ -15,7 +15,7 @@ using nlohmann::json;
 TEST(NeedsWavelengths, NothingInAnOrdinaryScene) {
     TinyGltf file = file_with_materials({prism(), json::object()});
     file.json["materials"][1]["emissiveFactor"] = {1, 1, 1};
-    const GltfFile loaded = load(file);
+    const io::GltfFile loaded = load(file);
     EXPECT_TRUE(scene_reasons(loaded.scene).empty());
     EXPECT_TRUE(glass_range_warnings(loaded.scene).empty());
     EXPECT_FALSE(glass_beyond(loaded.scene, 100, 5000));
@@ -67,4 +67,4 @@ TEST(NeedsWavelengths, GlassThatIsNotKnownEverywhere) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -10,7 +10,7 @@
 #include "io/image/picture_files.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 Film grey_film() {
@@ -24,9 +24,10 @@ Film grey_film() {
 }
 
 /// As a render does: answers pauses until there were so many, or ten seconds are over.
-int answer_pauses(Keeper& keeper, RenderMonitor& monitor, int wanted) {
+int answer_pauses(Keeper& keeper, integrator::RenderMonitor& monitor, int wanted) {
     int pauses = 0;
-    for (const double end_s = steady_s() + 10; pauses < wanted && steady_s() < end_s;) {
+    for (const double end_s = integrator::steady_s() + 10;
+         pauses < wanted && integrator::steady_s() < end_s;) {
         if (monitor.pause.exchange(false)) {
             keeper.at_pause({});
             ++pauses;
@@ -37,7 +38,7 @@ int answer_pauses(Keeper& keeper, RenderMonitor& monitor, int wanted) {
 }
 
 TEST(Keeper, WithoutAPlanNothingPauses) {
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     Keeper keeper({}, monitor);
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     EXPECT_FALSE(monitor.pause);
@@ -45,11 +46,11 @@ TEST(Keeper, WithoutAPlanNothingPauses) {
 }
 
 TEST(Keeper, WritesCheckpointsAgainAndAgain) {
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     int written = 0;
     KeeperPlan plan;
     plan.checkpoint_s = 0.01;
-    plan.write_checkpoint = [&](const PathStats&) { ++written; };
+    plan.write_checkpoint = [&](const integrator::PathStats&) { ++written; };
     Keeper keeper(plan, monitor);
     EXPECT_EQ(answer_pauses(keeper, monitor, 5), 5);
     EXPECT_GE(written, 4) << "a pause may come before its time";
@@ -57,14 +58,14 @@ TEST(Keeper, WritesCheckpointsAgainAndAgain) {
 
 // A disk that is full for a while: it is told once, tried again, and nothing is thrown.
 TEST(Keeper, GoesOnWhereACheckpointCannotBeWritten) {
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     int tries = 0;
     std::vector<std::string> said;
     KeeperPlan plan;
     plan.checkpoint_s = 0.01;
-    plan.write_checkpoint = [&](const PathStats&) {
+    plan.write_checkpoint = [&](const integrator::PathStats&) {
         ++tries;
-        throw OutputError("a.state", "", "cannot be written: no space");
+        throw io::OutputError("a.state", "", "cannot be written: no space");
     };
     plan.notice = [&](const std::string& text) { said.push_back(text); };
     Keeper keeper(plan, monitor);
@@ -76,7 +77,7 @@ TEST(Keeper, GoesOnWhereACheckpointCannotBeWritten) {
 
 TEST(Keeper, WritesAPreviewOfWhatThereIs) {
     const test::TemporaryFolder folder;
-    RenderMonitor monitor;
+    integrator::RenderMonitor monitor;
     const Film film = grey_film();
     KeeperPlan plan;
     plan.preview = folder / "now.png";
@@ -87,11 +88,11 @@ TEST(Keeper, WritesAPreviewOfWhatThereIs) {
         for (int i = 0; i < 1000 && !std::filesystem::exists(*plan.preview); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    const Picture now = read_picture(*plan.preview);
+    const io::Picture now = io::read_picture(*plan.preview);
     EXPECT_EQ(now.width, 8);
     EXPECT_EQ(now.height, 4);
     EXPECT_NEAR(now.pixels[0], 0.7354f, 0.003f);  // 0.5 by IEC 61966-2-1
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

@@ -8,7 +8,7 @@
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 std::vector<std::filesystem::path> names(size_t count) {
@@ -21,7 +21,7 @@ std::string complaint(const std::vector<StateBox>& parts) {
     try {
         static_cast<void>(covered_box(parts, names(parts.size())));
         return "";
-    } catch (const InputError& error) {
+    } catch (const io::InputError& error) {
         return error.what();
     }
 }
@@ -134,4 +134,4 @@ TEST(CoveredBox, OfTenThousandParts) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

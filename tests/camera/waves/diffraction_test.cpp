@@ -8,7 +8,7 @@
 #include "tests/camera/waves/stigmatic_lens.h"
 #include "tests/camera/waves/wave.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::stigmatic_lens;
@@ -166,4 +166,4 @@ TEST(Diffraction, MtfOfAnIdealLens) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

@@ -14,7 +14,7 @@
 #include "tests/support/lens_json.h"
 #include "tests/support/nasty_lens.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::stigmatic_lens;
@@ -320,4 +320,4 @@ TEST(RaysAndPattern, LimitsAreThoseOfTheWorstField) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

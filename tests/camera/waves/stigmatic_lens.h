@@ -9,12 +9,12 @@ namespace petzval::test {
 
 /// Plano-hyperbolic lens of index 1.5 at every wavelength, its stop before it: parallel light meets
 /// in one point. The film stands there.
-[[nodiscard]] inline Prescription stigmatic_lens(double focal_length_mm, double fnumber) {
+[[nodiscard]] inline camera::Prescription stigmatic_lens(double focal_length_mm, double fnumber) {
     constexpr double n = 1.5;
-    Prescription lens;
+    camera::Prescription lens;
     lens.name = "stigmatic";
     const double stop_mm = focal_length_mm / fnumber / 2;
-    LensSurface stop, front, back;
+    camera::LensSurface stop, front, back;
     stop.stop = true;
     stop.thickness_mm = 1;
     stop.semi_diameter_mm = stop_mm;

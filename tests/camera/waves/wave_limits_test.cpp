@@ -14,7 +14,7 @@
 #include "tests/support/lens_json.h"
 #include "tests/support/nasty_lens.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::read_lens;
@@ -325,4 +325,4 @@ TEST(WaveLimits, NastyLensesHaveFiniteFiguresOrNone) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

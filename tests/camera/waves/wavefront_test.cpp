@@ -11,7 +11,7 @@
 #include "tests/camera/waves/wave.h"
 #include "tests/support/lens_json.h"
 
-namespace petzval {
+namespace petzval::camera {
 namespace {
 
 using test::read_lens;
@@ -268,4 +268,4 @@ TEST(Wavefront, FastTransformAndHuygensAgree) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::camera

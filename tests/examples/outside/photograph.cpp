@@ -7,15 +7,15 @@
 
 int main(int count, char** words) try {
     if (count != 3) return std::fputs("photograph SCENE.glb PICTURE\n", stderr), 2;
-    petzval::RenderRequest request;
+    petzval::apps::RenderRequest request;
     request.scene.scene = words[1];
     request.scene.size = {96, 64};
     request.scene.camera.lens = "double-gauss-100mm-f2";
     request.samples.count = 16;
 
-    petzval::RenderSession session(2);
+    petzval::apps::RenderSession session(2);
     session.prepare(request, [](const std::string& line) { std::puts(line.c_str()); });
-    petzval::RenderMonitor monitor;
+    petzval::integrator::RenderMonitor monitor;
     session.render(monitor);
     session.write(words[2]);
     return 0;

@@ -12,29 +12,30 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::TemporaryFolder;
 
 // A shape file of that text.
-Polygon read(const std::string& elements, const std::string& attributes = "viewBox=\"0 0 20 20\"") {
+camera::Polygon read(const std::string& elements,
+                     const std::string& attributes = "viewBox=\"0 0 20 20\"") {
     const TemporaryFolder folder;
     const std::string text = "<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" " +
                              attributes + ">\n" + elements + "\n</svg>\n";
     test::write_text(folder / "iris.svg", text);
     return read_svg_aperture(folder / "iris.svg");
 }
-Polygon path(const std::string& d, const std::string& more = "") {
+camera::Polygon path(const std::string& d, const std::string& more = "") {
     return read("<path d=\"" + d + "\" " + more + "/>");
 }
 // Positive where the outer contour runs clockwise in the file, where y points down.
-double area(const Polygon& polygon) {
+double area(const camera::Polygon& polygon) {
     double sum = 0;
     for (const auto& contour : polygon.contours) sum -= test::signed_area(contour);
     return sum;
 }
-void expect_contour(const Polygon& polygon, const std::vector<V2d>& vertices) {
+void expect_contour(const camera::Polygon& polygon, const std::vector<camera::V2d>& vertices) {
     ASSERT_EQ(polygon.contours.size(), 1u);
     ASSERT_EQ(polygon.contours[0].size(), vertices.size());
     for (size_t i = 0; i < vertices.size(); ++i)
@@ -43,7 +44,7 @@ void expect_contour(const Polygon& polygon, const std::vector<V2d>& vertices) {
 
 TEST(SvgAperture, LinesOfEveryKind) {
     // In the file from (4, 4), y down; here about the middle of the viewBox, y up.
-    const std::vector<V2d> box = {{-6, 6}, {2, 6}, {2, -1}, {-6, -1}};
+    const std::vector<camera::V2d> box = {{-6, 6}, {2, 6}, {2, -1}, {-6, -1}};
     expect_contour(path("M4,4 L12 4 L12 11 L4 11 Z"), box);
     expect_contour(path("m4 4 8 0 0 7-8 0z"), box);
     expect_contour(path("M4 4H12V11H4Z"), box);
@@ -58,15 +59,15 @@ TEST(SvgAperture, LinesOfEveryKind) {
 }
 
 TEST(SvgAperture, Subpaths) {
-    const Polygon two = path("M0 0H8V8H0Z m2 2 v2 h2 v-2 z M10 0h4v4h-4z");
+    const camera::Polygon two = path("M0 0H8V8H0Z m2 2 v2 h2 v-2 z M10 0h4v4h-4z");
     ASSERT_EQ(two.contours.size(), 3u);
     EXPECT_NEAR(area(two), 64 - 4 + 16, 1e-12);
     EXPECT_FALSE(two.even_odd);
     // After Z a path goes on from where it began.
     const svg::Outline outline = read_svg_path("M5 6 h2 v2 z l-2 0 l0 -2 z", {"file", "d"});
     ASSERT_EQ(outline.size(), 2u);
-    EXPECT_EQ(outline[1].start, V2d(5, 6));
-    EXPECT_EQ(outline[1].curves[1].end, V2d(3, 4));
+    EXPECT_EQ(outline[1].start, camera::V2d(5, 6));
+    EXPECT_EQ(outline[1].curves[1].end, camera::V2d(3, 4));
     EXPECT_TRUE(path("M0 0H8V8H0Z M2 2h2v2h-2z", "fill-rule=\"evenodd\"").even_odd);
     EXPECT_TRUE(path("M0 0H8V8H0Z", "style=\"stroke:red; fill-rule : evenodd\"").even_odd);
 }
@@ -102,8 +103,8 @@ TEST(SvgAperture, Arcs) {
     EXPECT_NEAR(area(read("<ellipse cx=\"9\" rx=\"7\" ry=\"2\"/>")), 14 * pi, 0.01);
     EXPECT_NEAR(area(read("<rect width=\"8\" height=\"6\" rx=\"2\"/>")), 48 - 4 * (4 - pi), 0.01);
     EXPECT_NEAR(area(read("<rect width=\"8\" height=\"6\" rx=\"9\" ry=\"3\"/>")), 12 * pi, 0.01);
-    const Polygon round = read("<circle cx=\"10\" cy=\"10\" r=\"7\"/>");
-    for (const V2d& p : round.contours[0]) EXPECT_NEAR(p.length(), 7, 1e-4 * 7);
+    const camera::Polygon round = read("<circle cx=\"10\" cy=\"10\" r=\"7\"/>");
+    for (const camera::V2d& p : round.contours[0]) EXPECT_NEAR(p.length(), 7, 1e-4 * 7);
 }
 
 TEST(SvgAperture, LengthsInUnits) {
@@ -115,7 +116,7 @@ TEST(SvgAperture, LengthsInUnits) {
 }
 
 TEST(SvgAperture, Transforms) {
-    const std::vector<V2d> box = {{-6, 6}, {2, 6}, {2, -1}, {-6, -1}};
+    const std::vector<camera::V2d> box = {{-6, 6}, {2, 6}, {2, -1}, {-6, -1}};
     const auto with = [](const std::string& transform) {
         return path("M0 0H8V7H0Z", "transform=\"" + transform + "\"");
     };
@@ -230,9 +231,9 @@ TEST(MaskAperture, LuminanceTimesAlpha) {
     const TemporaryFolder folder;
     const auto mask_of = [&](const std::vector<uint8_t>& png) {
         test::write_bytes(folder / "mask.png", png);
-        return std::get<Mask>(parse_aperture("mask.png", folder.path()));
+        return std::get<camera::Mask>(parse_aperture("mask.png", folder.path()));
     };
-    const Mask rgba =
+    const camera::Mask rgba =
         mask_of(tiny_png(3, 2, {255, 255, 255, 255, 255, 0,   0,   255, 0,   255, 0,   51,  //
                                 0,   0,   255, 255, 128, 128, 128, 255, 255, 255, 255, 0}));
     ASSERT_EQ(rgba.width, 3);
@@ -240,9 +241,9 @@ TEST(MaskAperture, LuminanceTimesAlpha) {
     const float expected[] = {1, 0.2126f, 0.7152f * 0.2f, 0.0722f, 128.f / 255, 0};
     for (int i = 0; i < 6; ++i) EXPECT_NEAR(rgba.texels[i], expected[i], 1e-6) << i;
     EXPECT_EQ(rgba.texels[0], 1.f);
-    const Mask grey = mask_of(tiny_png(2, 1, 8, PngColour::Grey, {{51, 255}}));
+    const camera::Mask grey = mask_of(tiny_png(2, 1, 8, PngColour::Grey, {{51, 255}}));
     EXPECT_NEAR(grey.texels[0], 0.2, 1e-6);
-    const Mask with_alpha = mask_of(tiny_png(1, 1, 8, PngColour::GreyAlpha, {{102, 51}}));
+    const camera::Mask with_alpha = mask_of(tiny_png(1, 1, 8, PngColour::GreyAlpha, {{102, 51}}));
     EXPECT_NEAR(with_alpha.texels[0], 0.4 * 0.2, 1e-6);
     EXPECT_TRUE(has(refusal([&] {
                         (void)mask_of(tiny_png(1, 1, {0, 0, 0, 255}));
@@ -252,17 +253,17 @@ TEST(MaskAperture, LuminanceTimesAlpha) {
 
 TEST(ParseAperture, Names) {
     const auto count = [](const std::string& text) {
-        return std::get<Polygon>(parse_aperture(text)).contours[0].size();
+        return std::get<camera::Polygon>(parse_aperture(text)).contours[0].size();
     };
-    EXPECT_TRUE(std::holds_alternative<Disk>(parse_aperture("circle")));
+    EXPECT_TRUE(std::holds_alternative<camera::Disk>(parse_aperture("circle")));
     EXPECT_EQ(count("square"), 4u);
     EXPECT_EQ(count("rhomboid"), 4u);
     EXPECT_EQ(count("triangle"), 3u);
-    EXPECT_EQ(std::get<Polygon>(parse_aperture("frame")).contours.size(), 2u);
+    EXPECT_EQ(std::get<camera::Polygon>(parse_aperture("frame")).contours.size(), 2u);
     EXPECT_EQ(count("star:7"), 14u);
     EXPECT_EQ(count("polygon:6"), 6u);
     EXPECT_GT(count("polygon:6,0,0.5"), 20u);
-    const auto turned = std::get<Polygon>(parse_aperture("polygon:6,-30")).contours[0][0];
+    const auto turned = std::get<camera::Polygon>(parse_aperture("polygon:6,-30")).contours[0][0];
     EXPECT_NEAR(turned.x, 0.5, 1e-12);
     EXPECT_NEAR(turned.y, std::sqrt(0.75), 1e-12);
 }
@@ -293,4 +294,4 @@ TEST(ParseAperture, ListsWhatIsPossible) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

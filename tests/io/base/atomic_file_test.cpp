@@ -12,7 +12,7 @@
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -189,4 +189,4 @@ TEST(AtomicFile, AskingChangesNothing) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::TemporaryFolder;
@@ -105,4 +105,4 @@ TEST(Csv, TextCellsAreTrimmed) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

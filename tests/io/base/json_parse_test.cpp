@@ -6,7 +6,7 @@
 #include "io/base/json_cursor.h"
 #include "tests/support/refusal.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 const std::string kGltf = "a.gltf";
@@ -141,4 +141,4 @@ TEST_F(Cursor, NamesThePlaceOfEveryMismatch) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

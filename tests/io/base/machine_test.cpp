@@ -9,7 +9,7 @@
 
 #include "tests/support/tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,4 @@ TEST(Machine, FindsItsGroupInsideAContainer) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using ::testing::ElementsAre;
@@ -37,4 +37,4 @@ TEST(Nearest, SaysNothingWhereNothingIsNear) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

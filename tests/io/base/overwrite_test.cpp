@@ -6,7 +6,7 @@
 #include "io/base/error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ TEST(SameFile, RefusalNamesBoth) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 TEST(Printable, ShowsPlainTextAsItIs) {
@@ -50,4 +50,4 @@ TEST(Printable, CutsLongTextBetweenCharacters) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 #include "tests/support/open_watch.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::TemporaryFolder;
@@ -78,4 +78,4 @@ TEST(ReadFile, TellsTextsByWhatTheyDoNotHold) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -116,4 +116,4 @@ TEST(Rescue, EveryActionIsTried) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

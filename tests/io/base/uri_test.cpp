@@ -7,7 +7,7 @@
 
 #include "tests/support/tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -77,4 +77,4 @@ TEST(RelativePath, RefusesAddresses) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text_mutation.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ TEST(Decoders, AcceptOrRefuseChangedFilesThatCombineWhatMeshesMayHave) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -11,7 +11,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text_mutation.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr double kLineE_nm = 546.0740;
@@ -197,4 +197,4 @@ TEST_F(Agf, MutationsAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

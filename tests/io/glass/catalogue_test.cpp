@@ -12,7 +12,7 @@
 #include "io/glass/catalogue.h"
 #include "io/glass/glass_lookup.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 std::optional<Glass> find_glass(const std::string& name) {
@@ -202,13 +202,13 @@ TEST(GlassCatalog, IndicesOfLensesAreCloseToTheFormula) {
     const std::vector<Glass> glasses = glass_catalog();
     double worst = 0, worst_visible = 0;
     for (size_t i = 0; i < glasses.size();) {
-        Prescription lens;
-        for (; i < glasses.size() && lens.surfaces.size() < kMaxMedia - 1; ++i) {
+        camera::Prescription lens;
+        for (; i < glasses.size() && lens.surfaces.size() < camera::kMaxMedia - 1; ++i) {
             lens.surfaces.emplace_back().glass = glasses[i];
             lens.surfaces.back().glass->name += std::to_string(i);
         }
         lens.surfaces.front().stop = true;
-        const Lens ready(lens);
+        const camera::Lens ready(lens);
         ASSERT_EQ(ready.media().size(), lens.surfaces.size() + 1);
         for (float nm = 360.5f; nm < 830; nm += 5) {
             const auto table = ready.indices(splat(nm)), exact = ready.exact_indices(splat(nm));
@@ -281,4 +281,4 @@ TEST(GlassCatalog, SuggestsWhatWasMeant) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -34,16 +34,16 @@ AnimatedGltf motions() {
 }
 
 /// Where the origin of a probe is.
-V3f origin(const GltfFile& file, size_t number) {
+V3f origin(const io::GltfFile& file, size_t number) {
     return file.scene.meshes.at(number).positions.at(0);
 }
 
-V3f origin(const TinyGltf& file, size_t number, const AnimationChoice& choice) {
+V3f origin(const TinyGltf& file, size_t number, const io::AnimationChoice& choice) {
     return origin(load_at(file, choice), number);
 }
 
 TEST(AnimationChoice, AllArePlayedThatDoNotMoveTheSame) {
-    const GltfFile loaded = load_at(motions(), 1);
+    const io::GltfFile loaded = load_at(motions(), 1);
     EXPECT_EQ(origin(loaded, 0), V3f(1, 0, 0));
     EXPECT_EQ(origin(loaded, 1), V3f(0, 0, 1));
     EXPECT_EQ(loaded.scene.meshes.at(1).positions.at(1).x, 2);  // scaled by the last animation
@@ -58,7 +58,7 @@ TEST(AnimationChoice, AnAnimationThatMeetsNoOtherThatIsPlayedIsPlayed) {
     file.add_channel(node_target(0, "scale"), {0, 2}, "VEC3", {1, 1, 1, 3, 3, 3});
     file.json["animations"][1]["channels"].push_back(
         {{"sampler", 0}, {"target", node_target(0, "scale")}});
-    const GltfFile loaded = load_at(file, 1);
+    const io::GltfFile loaded = load_at(file, 1);
     EXPECT_EQ(loaded.scene.meshes.at(0).positions.at(1), V3f(3, 0, 0));
 }
 
@@ -76,7 +76,7 @@ TEST(AnimationChoice, ByNameAndNumber) {
     EXPECT_EQ(origin(motions(), 0, moment(1, {"up"})), V3f(0, 1, 0));
     EXPECT_EQ(origin(motions(), 0, moment(1, {"1"})), V3f(0, 1, 0));
     EXPECT_EQ(origin(motions(), 1, moment(1, {"up"})), V3f(0));
-    const GltfFile both = load_at(motions(), moment(1, {"deep", "1", "deep"}));
+    const io::GltfFile both = load_at(motions(), moment(1, {"deep", "1", "deep"}));
     EXPECT_EQ(origin(both, 0), V3f(0, 1, 0));
     EXPECT_EQ(origin(both, 1), V3f(0, 0, 1));
     EXPECT_EQ(std::count_if(both.remarks.begin(), both.remarks.end(),
@@ -92,15 +92,15 @@ TEST(AnimationChoice, WhatTwoNamedOnesMoveTheLaterNameDecides) {
 TEST(AnimationChoice, WithoutOneTheStoredPoseIsShown) {
     AnimatedGltf file = motions();
     file.json["nodes"][0]["translation"] = {9, 9, 9};
-    const GltfFile loaded = load(file);
+    const io::GltfFile loaded = load(file);
     EXPECT_EQ(origin(loaded, 0), V3f(9));
     EXPECT_TRUE(contains_line(loaded.remarks, "the file holds 4 animations; the pose that it"));
 }
 
 TEST(AnimationChoice, AnUnknownNameIsRefused) {
-    EXPECT_THROW((void)load_at(motions(), moment(1, {"run"})), ArgumentError);
-    EXPECT_THROW((void)load_at(motions(), moment(1, {"4"})), ArgumentError);
-    EXPECT_THROW((void)load_at(motions(), moment(1, {"along", "x"})), ArgumentError);
+    EXPECT_THROW((void)load_at(motions(), moment(1, {"run"})), io::ArgumentError);
+    EXPECT_THROW((void)load_at(motions(), moment(1, {"4"})), io::ArgumentError);
+    EXPECT_THROW((void)load_at(motions(), moment(1, {"along", "x"})), io::ArgumentError);
     const std::string text = refusal([] { (void)load_at(motions(), moment(1, {"run"})); });
     EXPECT_TRUE(has(text, "along"));
     EXPECT_TRUE(has(text, "deep"));
@@ -109,10 +109,10 @@ TEST(AnimationChoice, AnUnknownNameIsRefused) {
 TEST(AnimationChoice, AFileWithoutAnimationsShowsItsPoseAtAnyTime) {
     AnimatedGltf file;
     file.add_root({{"mesh", file.add_probe()}, {"translation", {1, 2, 3}}});
-    const GltfFile loaded = load_at(file, 1);
+    const io::GltfFile loaded = load_at(file, 1);
     EXPECT_EQ(origin(loaded, 0), V3f(1, 2, 3));
     EXPECT_TRUE(contains_line(loaded.remarks, "holds no animation"));
-    EXPECT_THROW((void)load_at(file, moment(1, {"run"})), ArgumentError);
+    EXPECT_THROW((void)load_at(file, moment(1, {"run"})), io::ArgumentError);
 }
 
 TEST(AnimationLoop, BeginsAnewAfterItsEnd) {
@@ -130,7 +130,7 @@ TEST(AnimationLoop, BeginsAnewAfterItsEnd) {
 }
 
 TEST(AnimationLoop, EachRepeatsByItsOwnLength) {
-    const GltfFile loaded = load_at(motions(), 5.5);
+    const io::GltfFile loaded = load_at(motions(), 5.5);
     EXPECT_FLOAT_EQ(origin(loaded, 0).x, 1.5f);  // of 2 s
     EXPECT_FLOAT_EQ(origin(loaded, 1).z, 1.5f);  // of 4 s
 }
@@ -176,7 +176,7 @@ TEST(AnimationEnd, ItsLastMomentIsItsLastPose) {
 }
 
 TEST(AnimationEnd, EachEndsWhereItEnds) {
-    const GltfFile loaded = load_at(motions(), AnimationChoice{3, {}});
+    const io::GltfFile loaded = load_at(motions(), io::AnimationChoice{3, {}});
     EXPECT_EQ(origin(loaded, 0).x, 2);  // of 2 s
     EXPECT_EQ(origin(loaded, 1).z, 3);  // of 4 s
 }
@@ -185,7 +185,7 @@ TEST(AnimationEnd, AnArmatureOfBlenderEndsAsItEnds) {
     const std::filesystem::path path = PETZVAL_SHARED "/faults2/blender/armature.glb";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the folder ../shared";
     const auto at_frame = [&](int frame) {
-        const GltfFile file = load_at(path, AnimationChoice{frame / 24., {}});
+        const io::GltfFile file = load_at(path, io::AnimationChoice{frame / 24., {}});
         std::vector<V3f> all;
         for (const Mesh& mesh : file.scene.meshes)
             all.insert(all.end(), mesh.positions.begin(), mesh.positions.end());
@@ -219,7 +219,7 @@ TEST(AnimationLoop, AClosedOneGoesOn) {
 
 /// What a moment sees that is not the one by which turns are counted, as an open shutter has it.
 TEST(AnimationLoop, AnExposureAcrossTheEndStaysThereUnlessTheMotionIsClosed) {
-    GltfClip clip;
+    io::GltfClip clip;
     clip.duration_s = 2;
     EXPECT_EQ(clip.local_s(2.25, 1.75, true), 2);
     EXPECT_EQ(clip.local_s(1.75, 2.25, true), 0);
@@ -234,8 +234,8 @@ TEST(AnimationLoop, AnExposureAcrossTheEndStaysThereUnlessTheMotionIsClosed) {
 
 /// Whether a clip of one property with these keys is closed.
 bool closes(size_t width, bool rotation, const std::vector<double>& values) {
-    GltfClip clip;
-    Keyframes keys;
+    io::GltfClip clip;
+    io::Keyframes keys;
     keys.width = width;
     keys.rotation = rotation;
     keys.values = values;

@@ -62,13 +62,13 @@ bool is_shown(const TinyGltf& file) {
     try {
         (void)load_at(file, 0.3);
         return true;
-    } catch (const InputError&) {
+    } catch (const io::InputError&) {
         return false;
     }
 }
 
 TEST(AnimationFuzz, TheSampleIsShown) {
-    const GltfFile loaded = load_at(sample_file(), 0.3);
+    const io::GltfFile loaded = load_at(sample_file(), 0.3);
     EXPECT_EQ(loaded.warnings, std::vector<std::string>());
     EXPECT_EQ(loaded.scene.instances.size(), 2u);
 }

@@ -161,11 +161,11 @@ TEST(AnimationKeys, AKeyOfNoLengthTurnsNothing) {
 }
 
 TEST(AnimationKeys, RotationsComeOutWithALengthOfOne) {
-    Keyframes keys;
+    io::Keyframes keys;
     keys.times_s = {0, 1};
     keys.width = 4;
     keys.rotation = true;
-    keys.interpolation = Interpolation::CubicSpline;
+    keys.interpolation = io::Interpolation::CubicSpline;
     keys.values = {0, 0, 0, 0, 0, 0, 0, 1, 1, 2, 0, 0, 0, 3, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0};
     for (const double time : {-1., 0., 0.3, 0.5, 1., 2.}) {
         const std::vector<double> q = keys.at(time);

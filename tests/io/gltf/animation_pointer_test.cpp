@@ -66,7 +66,7 @@ TEST(AnimationPointer, FactorsOfMaterialsMove) {
     move(file, layer + "specular/specularColorFactor", {0, 1, 0}, {1, 1, 0.5f});
     move(file, layer + "transmission/transmissionFactor", {0}, {1});
     move(file, layer + "ior/ior", {1}, {2});
-    const GltfFile loaded = load_at(file, 0.5);
+    const io::GltfFile loaded = load_at(file, 0.5);
     const Material& m = loaded.scene.materials.at(0);
     EXPECT_FLOAT_EQ(m.base_color[0], 0.25f);
     EXPECT_FLOAT_EQ(m.base_color[1], 0.375f);
@@ -164,7 +164,7 @@ TEST(AnimationPointer, LightsMove) {
     move(file, at + "spot/innerConeAngle", {0}, {0.5f});
     move(file, at + "spot/outerConeAngle", {0.5f}, {1});
     move(file, "/nodes/0/translation", {0, 0, 0}, {0, 4, 0});
-    const GltfFile loaded = load_at(file, 0.5);
+    const io::GltfFile loaded = load_at(file, 0.5);
     const auto& light = std::get<SpotLight>(loaded.scene.lights.at(0));
     EXPECT_FLOAT_EQ(light.intensity_cd[0], 1.5f);  // 2 cd, and a red of 3/4
     EXPECT_FLOAT_EQ(light.intensity_cd[1], 0.5f);
@@ -187,7 +187,7 @@ TEST(AnimationPointer, CamerasMove) {
     move(file, "/cameras/0/perspective/aspectRatio", {1}, {3});
     move(file, "/cameras/1/orthographic/xmag", {2}, {4});
     file.add_channel(node_target(0, "translation"), {0, 2}, "VEC3", {0, 0, 0, 2, 4, 6});
-    const GltfFile loaded = load_at(file, 1);
+    const io::GltfFile loaded = load_at(file, 1);
     ASSERT_EQ(loaded.cameras.size(), 2u);
     EXPECT_FLOAT_EQ(loaded.cameras[0].yfov_rad, 1);
     EXPECT_FLOAT_EQ(loaded.cameras[0].aspect.value_or(0), 2);
@@ -275,12 +275,12 @@ TEST_P(Nowhere, IsWarnedOfAndChangesNothing) {
                    {"children", {1}}});
     file.json["meshes"][0]["weights"] = {0.5};
     const Shape before = [&] {
-        const GltfFile loaded = load(file);
+        const io::GltfFile loaded = load(file);
         return shape_of(loaded.scene, loaded.scene.instances.at(0));
     }();
     // As many numbers as any property takes.
     file.add_channel(pointer_target(GetParam()), {0}, "VEC4", {0.5f, 0.5f, 0.5f, 0.5f});
-    const GltfFile loaded = load_at(file, 0.5);
+    const io::GltfFile loaded = load_at(file, 0.5);
     EXPECT_TRUE(contains_line(loaded.warnings, "/animations/0/channels/0/target: animates"));
     EXPECT_EQ(
         apart(before.positions, shape_of(loaded.scene, loaded.scene.instances.at(0)).positions), 0);

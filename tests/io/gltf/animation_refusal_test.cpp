@@ -42,7 +42,7 @@ std::string why_refused(const TinyGltf& file) {
 
 /// The warnings of a file whose one channel is left out: the probe stays where it is.
 std::string left_out(const TinyGltf& file) {
-    const GltfFile loaded = load_at(file, moment(0.5, {"wrong"}));
+    const io::GltfFile loaded = load_at(file, moment(0.5, {"wrong"}));
     EXPECT_EQ(loaded.scene.meshes.at(0).positions.at(0), V3f(0));
     std::string text;
     for (const std::string& line : loaded.warnings) text += line + "\n";
@@ -54,11 +54,11 @@ std::string left_out(const TinyGltf& file) {
 /// Warnings of what petzval info looks through.
 std::vector<std::string> told(const TinyGltf& file) {
     const TempFolder folder;
-    GltfChoices choices;
+    io::GltfChoices choices;
     choices.checks_all_animations = true;
-    PictureBudget pictures;
-    return load_gltf(file.save_glb(folder.path / "test.glb"), FileScope::Anywhere, pictures,
-                     choices)
+    io::PictureBudget pictures;
+    return io::load_gltf(file.save_glb(folder.path / "test.glb"), io::FileScope::Anywhere, pictures,
+                         choices)
         .warnings;
 }
 
@@ -289,7 +289,7 @@ TEST(AnimationRefusal, OfTwoChannelsForOneTargetTheFirstIsTaken) {
 }
 
 TEST(AnimationRefusal, AnAnimationWithoutChannelsChangesNothing) {
-    const GltfFile loaded = load_at(moving(), moment(0.5, {"idle"}));
+    const io::GltfFile loaded = load_at(moving(), moment(0.5, {"idle"}));
     EXPECT_EQ(loaded.scene.meshes.at(0).positions.at(0), V3f(0));
     EXPECT_TRUE(contains_line(loaded.remarks, "animation: idle at 0 s of 0"));
 }
@@ -339,7 +339,7 @@ TEST(AnimationRefusal, TimesFarAwayAreTimes) {
 TEST(AnimationRefusal, ABrokenOneThatIsNotPlayedIsAWarning) {
     AnimatedGltf file = moving();
     sampler_of(file)["input"] = 99;
-    const GltfFile played = load_at(file, moment(0.5, {"idle"}));
+    const io::GltfFile played = load_at(file, moment(0.5, {"idle"}));
     EXPECT_EQ(played.scene.meshes.size(), 1u);
     EXPECT_TRUE(contains_line(played.warnings, "/animations/0: is broken in places"));
     EXPECT_TRUE(contains_line(load(file).warnings, "/animations/0: is broken in places"));

@@ -21,7 +21,7 @@ class MovingScene : public testing::TestWithParam<Moving> {};
 TEST_P(MovingScene, StandsWhereTheReferenceSays) {
     const auto path = kOpenScenes / GetParam().file;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-    const GltfSource source = read_gltf_source(path);
+    const io::GltfSource source = io::read_gltf_source(path);
     ASSERT_EQ(source.json.value("animations", nlohmann::json::array()).size(),
               GetParam().animations);
     constexpr int kMoments = 8;
@@ -35,7 +35,7 @@ TEST_P(MovingScene, StandsWhereTheReferenceSays) {
             SCOPED_TRACE(testing::Message() << "animation " << number << " at " << time);
             AnimationTruth truth = still;
             truth.play(number, time);
-            const GltfFile loaded = load_at(path, moment(time, {std::to_string(number)}));
+            const io::GltfFile loaded = load_at(path, moment(time, {std::to_string(number)}));
             expect_shapes(truth.shapes(), loaded, GetParam().steps);
         }
     }
@@ -70,14 +70,14 @@ TEST(StillScene, IsAtAnyTimeAsItIsStored) {
         if (path.string().find("/bad/") != std::string::npos || entry.file_size() > kMostBytes)
             continue;
         SCOPED_TRACE(path);
-        GltfFile stored;
+        io::GltfFile stored;
         try {
-            stored = load_gltf(path);
-        } catch (const InputError&) {
+            stored = io::load_gltf(path);
+        } catch (const io::InputError&) {
             continue;  // some are there to be refused
         }
         if (stored.holds.animation_count > 0) continue;
-        const GltfFile later = load_at(path, moment(1.5));
+        const io::GltfFile later = load_at(path, moment(1.5));
         EXPECT_EQ(later.warnings, stored.warnings);
         EXPECT_EQ(later.cameras.size(), stored.cameras.size());
         EXPECT_EQ(later.scene.lights.size(), stored.scene.lights.size());

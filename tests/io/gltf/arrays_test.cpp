@@ -4,7 +4,7 @@
 
 #include "tests/support/load_tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
@@ -230,4 +230,4 @@ TEST(GltfArrays, SparseVertexNumbersWithoutDataAreZeros) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

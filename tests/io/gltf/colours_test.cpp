@@ -6,7 +6,7 @@
 #include "tests/support/tiny_jpeg.h"
 #include "tests/support/tiny_profile.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -98,4 +98,4 @@ TEST(GltfColours, NormalMapsThatWentThroughTheCurveOfSrgb) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "tests/support/meshes/encoders.h"
 #include "tests/support/refusal.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -434,4 +434,4 @@ TEST(GltfDraco, RefusesToFillTheMemory) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,11 +6,11 @@
 
 #include "core/shading/surface.h"
 #include "core/traversal/bvh.h"
-#include "io/gltf/nodes.h"
+#include "io/gltf/document/nodes.h"
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -173,4 +173,4 @@ TEST(GltfFlat, MirroredNodesAreMirrorImages) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

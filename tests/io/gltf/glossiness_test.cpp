@@ -7,7 +7,7 @@
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -144,4 +144,4 @@ TEST(GltfGlossiness, GoesBeforeTheCoreMaterialAndItsLayers) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -125,4 +125,4 @@ TEST(GltfImageLight, BrokenOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,7 +5,7 @@
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/refusal.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -204,4 +204,4 @@ TEST(GltfInstancing, AnInstancedFileIsTheExpandedOne) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include "io/base/error.h"
 #include "tests/support/load_tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -217,4 +217,4 @@ TEST(LostByExporter, BonesAreNotAreaLamps) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

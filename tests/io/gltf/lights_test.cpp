@@ -4,7 +4,7 @@
 
 #include "tests/support/load_tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -206,4 +206,4 @@ TEST(GltfCameras, ThoseThatCannotBeDrawnAreWarnedOf) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

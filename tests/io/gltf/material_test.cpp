@@ -7,7 +7,7 @@
 
 #include "tests/support/gltf_material.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using namespace test::gltf_material;
@@ -221,4 +221,4 @@ TEST(GltfMaterial, TexturesOfLayersThatAreNotThereAreNotDecoded) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include "tests/support/spectral_gltf.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using namespace test;
@@ -101,4 +101,4 @@ TEST(GltfExtras, AReflectanceHasNoTextureButACutoutsHoles) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 #include "tests/support/moving_gltf.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using namespace test;
@@ -305,4 +305,4 @@ TEST(GltfMotionBound, ThinningOfWeightsAddsUpWhatTargetsDo) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -2,7 +2,7 @@
 // Lights and cameras that move or zoom while the shutter is open, against stills of single moments.
 #include "tests/io/gltf/swinging.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using namespace test;
@@ -155,4 +155,4 @@ TEST(GltfMotion, CamerasStandWhereTheStillsHaveThem) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

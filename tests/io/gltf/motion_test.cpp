@@ -6,7 +6,7 @@
 #include "tests/io/gltf/swinging.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using namespace test;
@@ -310,4 +310,4 @@ TEST(GltfMotion, AClosedClipGoesOnWhileTheShutterIsOpen) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,7 +5,7 @@
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/refusal.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
@@ -277,4 +277,4 @@ TEST(GltfSkin, WithoutInverseBindMatricesTheyAreIdentity) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

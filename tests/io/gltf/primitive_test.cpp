@@ -5,7 +5,7 @@
 #include "io/gltf/meshes/triangles.h"
 #include "tests/support/load_tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
@@ -148,4 +148,4 @@ TEST(GltfPrimitive, MorphWeightsOfANodeOverrideTheMeshs) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,7 +5,7 @@
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/refusal.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -131,4 +131,4 @@ TEST(GltfProfileLights, BrokenOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 #include "io/base/error.h"
 #include "tests/support/load_tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 const std::filesystem::path kScenesOpen = PETZVAL_SHARED "/scenes/open";
@@ -92,4 +92,4 @@ TEST(AssetGenerator, FilesLoadOrAreRefusedAsListed) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

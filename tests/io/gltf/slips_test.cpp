@@ -8,7 +8,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -139,4 +139,4 @@ TEST(GltfSlips, StridesThatGraphicsCardsRefuse) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -7,7 +7,7 @@
 #include "tests/support/spectral_gltf.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using namespace test;
@@ -316,4 +316,4 @@ TEST(GltfExtras, WrongOnesOfLightsAreRefused) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

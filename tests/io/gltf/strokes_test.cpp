@@ -9,7 +9,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -199,4 +199,4 @@ TEST(GltfStrokes, AnUndefinedPlaceIsNone) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

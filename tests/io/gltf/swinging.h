@@ -38,12 +38,12 @@ inline size_t moving(const Scene& scene) {
                                              [](const Instance& i) { return i.moves; }));
 }
 
-inline void expect_still(const GltfFile& file) {
+inline void expect_still(const io::GltfFile& file) {
     EXPECT_EQ(moving(file.scene), 0u);
     EXPECT_EQ(deforming(file.scene), 0u);
     EXPECT_TRUE(file.scene.motions.empty());
     EXPECT_TRUE(file.scene.light_motions.empty());
-    for (const GltfCamera& camera : file.cameras) EXPECT_TRUE(camera.steps.empty());
+    for (const io::GltfCamera& camera : file.cameras) EXPECT_TRUE(camera.steps.empty());
     EXPECT_FALSE(has_motion(file.scene));
 }
 

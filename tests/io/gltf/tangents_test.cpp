@@ -9,7 +9,7 @@
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// A mesh with tangents, its vertices split where that needs it.
@@ -226,4 +226,4 @@ TEST(GltfTangents, AgreeWithThoseOfARealFile) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

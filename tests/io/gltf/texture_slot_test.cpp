@@ -5,7 +5,7 @@
 #include "tests/support/gltf_material.h"
 #include "tests/support/refusal.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using namespace test::gltf_material;
@@ -275,4 +275,4 @@ TEST(GltfTextureSlot, ATextureWithoutAnImageIsWarnedOf) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

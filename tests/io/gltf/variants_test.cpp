@@ -6,7 +6,7 @@
 #include "tests/support/load_tiny_gltf.h"
 #include "tests/support/refusal.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -118,4 +118,4 @@ TEST(GltfVariants, MaterialsThatAreNotThereAreRefused) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

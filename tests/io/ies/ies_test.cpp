@@ -7,7 +7,7 @@
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
@@ -197,4 +197,4 @@ TEST(Ies, WhatIsWrongIsNamedWithItsLine) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

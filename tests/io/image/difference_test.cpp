@@ -13,7 +13,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::noise;
@@ -193,4 +193,4 @@ TEST(ImageDiff, DisplayValuesAreNotComparedWithLight) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

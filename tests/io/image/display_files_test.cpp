@@ -11,7 +11,7 @@
 #include "tests/support/ocio_config.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 class DisplayFiles : public ::testing::Test {
@@ -82,4 +82,4 @@ TEST_F(DisplayFiles, PipesAreRefusedHoweverTheyAreNamed) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -15,7 +15,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::held;
@@ -201,4 +201,4 @@ TEST(Assets, AreFoundInTheSourceTreeOrNamed) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

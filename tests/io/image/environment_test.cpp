@@ -11,7 +11,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::picture;
@@ -114,4 +114,4 @@ TEST(Environment, RefusesTheBrokenOnesAndTakesTheOthers) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

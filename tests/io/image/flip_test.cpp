@@ -10,7 +10,7 @@
 #include "core/spectrum/colour.h"
 #include "tests/support/statistics.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 Picture filled(int width, int height, const V3f& colour) {
@@ -132,4 +132,4 @@ TEST(Flip, RefusesWhatCannotBeCompared) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

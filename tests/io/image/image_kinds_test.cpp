@@ -8,7 +8,7 @@
 #include "tests/support/tiny_jpeg.h"
 #include "tests/support/tiny_profile.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -198,4 +198,4 @@ TEST(ImageKinds, BrokenProfilesDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 #include "io/image/picture_files.h"
 #include "io/image/sheet_layout.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 const std::filesystem::path kFont = SheetOptions{}.font;
@@ -96,4 +96,4 @@ TEST(FittingLetters, AreSmallerForALongLabelDownToWhatCanBeRead) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::picture;
@@ -58,4 +58,4 @@ TEST(Output, PartialPicturesStandBesideAndNeverReplace) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::noise;
@@ -123,4 +123,4 @@ TEST(PictureBudget, IsAskedBeforeAPictureIsRead) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

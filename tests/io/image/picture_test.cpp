@@ -15,7 +15,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_png.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -361,4 +361,4 @@ TEST(Fuzz, BrokenFilesDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 
 #include "tests/support/pictures.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::noise;
@@ -100,4 +100,4 @@ TEST(Reduced, RefusesToEnlarge) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

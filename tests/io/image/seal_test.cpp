@@ -8,7 +8,7 @@
 #include "io/file/read_file.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// A file of some megabytes with the unfilled value at these places, sealed.
@@ -91,4 +91,4 @@ TEST(Seal, OfAPngNothingFollowsItsEnd) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -14,7 +14,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::noise;
@@ -261,4 +261,4 @@ TEST_F(Sheet, IsCheckedEarly) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

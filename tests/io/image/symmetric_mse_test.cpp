@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 TEST(SymmetricMse, MatchesTheFormula) {
@@ -59,4 +59,4 @@ TEST(SymmetricMse, FloorFollowsTheScaleOfThePicture) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

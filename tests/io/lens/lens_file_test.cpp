@@ -15,7 +15,7 @@
 #include "tests/support/lens_text.h"
 #include "tests/support/text_mutation.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::kDat;
@@ -55,7 +55,7 @@ TEST(ShippedLenses, HaveTheFirstOrderDataOfAnotherProgram) {
         EXPECT_EQ(file.lens.name, name);
         EXPECT_TRUE(file.warnings.empty()) << name;
         EXPECT_GT(file.lens.image_circle_mm, 0) << name;
-        const FirstOrder lens = first_order(Lens(file.lens), kLineD_nm);
+        const camera::FirstOrder lens = camera::first_order(camera::Lens(file.lens), kLineD_nm);
         // The other program takes another fluorite than Nikon's.
         const bool fluorite = std::string(name).starts_with("nikkor-400mm");
         EXPECT_NEAR(lens.focal_length_mm / focal_length_mm, 1, fluorite ? 1e-4 : 1e-6) << name;
@@ -67,16 +67,17 @@ TEST(ShippedLenses, HaveTheFirstOrderDataOfAnotherProgram) {
 
 TEST(ShippedLenses, AreAsTheirFilesState) {
     for (const FirstOrderData& row : kShipped) {
-        const Prescription lens = load_lens(row.name).lens;
+        const camera::Prescription lens = load_lens(row.name).lens;
         ASSERT_TRUE(lens.stated_focal_length_mm && lens.stated_fnumber &&
                     lens.stated_field_half_deg)
             << row.name;
-        const FirstOrder traced = first_order(Lens(lens), kLineD_nm);
+        const camera::FirstOrder traced = camera::first_order(camera::Lens(lens), kLineD_nm);
         EXPECT_NEAR(traced.focal_length_mm / *lens.stated_focal_length_mm, 1, 0.006) << row.name;
         EXPECT_NEAR(traced.fnumber / *lens.stated_fnumber, 1, 0.006) << row.name;
     }
-    const Lens anamorphic(load_lens("schneider-anamorphic-31mm").lens);
-    EXPECT_NEAR(first_order(anamorphic, kLineD_nm, Section::X).focal_length_mm, 31, 0.5);
+    const camera::Lens anamorphic(load_lens("schneider-anamorphic-31mm").lens);
+    EXPECT_NEAR(camera::first_order(anamorphic, kLineD_nm, camera::Section::X).focal_length_mm, 31,
+                0.5);
 }
 
 TEST(ShippedLenses, AreListedByName) {
@@ -84,7 +85,7 @@ TEST(ShippedLenses, AreListedByName) {
     ASSERT_EQ(list.size(), std::size(kShipped));
     for (size_t i = 0; i < list.size(); ++i) {
         EXPECT_EQ(list[i].name, kShipped[i].name);
-        const Prescription lens = load_lens(list[i].name).lens;
+        const camera::Prescription lens = load_lens(list[i].name).lens;
         EXPECT_EQ(list[i].title, lens.title);
         EXPECT_TRUE(lens.source.starts_with(list[i].patent)) << lens.source;
         EXPECT_EQ(list[i].focal_length_mm, *lens.stated_focal_length_mm);
@@ -96,15 +97,15 @@ TEST(ShippedLenses, AreListedByName) {
 
 // The patent: the group behind surface 10 (from 0) moves to the film by 15.27 mm for 2.6 m.
 TEST(ShippedLenses, FocusByTheGroupOfThePatent) {
-    const Prescription lens = load_lens("nikkor-400mm-f2.8-fl").lens;
+    const camera::Prescription lens = load_lens("nikkor-400mm-f2.8-fl").lens;
     ASSERT_TRUE(lens.focus_group);
     EXPECT_EQ(*lens.focus_group, (std::array{11, 15}));
     EXPECT_EQ(lens.surfaces[10].thickness_mm, 18.503);
     EXPECT_EQ(lens.surfaces[15].thickness_mm, 38.179);
-    Prescription close = lens;
+    camera::Prescription close = lens;
     close.surfaces[10].thickness_mm += 15.27;
     close.surfaces[15].thickness_mm -= 15.27;
-    const ParaxialImage image = image_of(Lens(close), -2203.01, kLineD_nm);
+    const camera::ParaxialImage image = camera::image_of(camera::Lens(close), -2203.01, kLineD_nm);
     EXPECT_NEAR(image.from_last_vertex_mm, lens.surfaces[32].thickness_mm, 0.4);
     EXPECT_NEAR(image.magnification, -0.173, 0.001);
     EXPECT_FALSE(load_lens("takumar-50mm-f1.2").lens.focus_group);
@@ -127,7 +128,7 @@ const char* const kJson = R"({"title": "A doublet", "focal_length": 100, "fnumbe
 {"radius": null, "thickness": 80, "medium": null, "semi_diameter": 8, "stop": true}]})";
 
 TEST_F(LensText, OurJsonIsRead) {
-    const Prescription lens = read("mine.json", kJson).lens;
+    const camera::Prescription lens = read("mine.json", kJson).lens;
     EXPECT_EQ(lens.name, "mine");
     EXPECT_EQ(lens.title, "A doublet");
     EXPECT_EQ(read("a.json", with(kJson, "A doublet", "A\\ndoublet")).lens.title, "A doublet");
@@ -141,7 +142,7 @@ TEST_F(LensText, OurJsonIsRead) {
     EXPECT_EQ(lens.surfaces[2].asphere, (std::vector<std::array<double, 2>>{{4, 1e-7}}));
     EXPECT_TRUE(lens.surfaces[3].stop);
     const std::string cylinder = with(kJson, "\"conic\": -0.5", R"("cylinder": "x")");
-    EXPECT_EQ(read("a.json", cylinder).lens.surfaces[1].profile, Profile::CylinderX);
+    EXPECT_EQ(read("a.json", cylinder).lens.surfaces[1].profile, camera::Profile::CylinderX);
     const std::string minimal =
         R"({"surfaces": [{"radius": null, "thickness": 1, "medium": null, "semi_diameter": 1,
             "stop": true}]})";
@@ -149,21 +150,22 @@ TEST_F(LensText, OurJsonIsRead) {
 }
 
 TEST_F(LensText, CoatingsAreReadByNameAndByLayer) {
-    EXPECT_EQ(read("a.json", kJson).lens.surfaces[0].coat, SurfaceCoat(Coating::Uncoated));
+    EXPECT_EQ(read("a.json", kJson).lens.surfaces[0].coat,
+              camera::SurfaceCoat(camera::Coating::Uncoated));
     const auto first = [&](const std::string& coating) {
         return with(kJson, "\"radius\": 50", "\"coating\": " + coating + ", \"radius\": 50");
     };
     const auto coat = [&](const char* coating) {
         return read("a.json", first(coating)).lens.surfaces[0].coat;
     };
-    EXPECT_EQ(coat("\"Broadband\""), SurfaceCoat(Coating::Broadband));
+    EXPECT_EQ(coat("\"Broadband\""), camera::SurfaceCoat(camera::Coating::Broadband));
     const char* const layers = R"({"layers": [{"thickness_nm": 99.6, "index": 1.38},
         {"thickness_nm": 0, "index": 2.1, "cauchy_um2": 0.01, "extinction": 0.002}]})";
-    const SurfaceCoat two = LayerStack{{99.6, 1.38}, {0, 2.1, 0.01, 0.002}};
+    const camera::SurfaceCoat two = camera::LayerStack{{99.6, 1.38}, {0, 2.1, 0.01, 0.002}};
     EXPECT_EQ(coat(layers), two);
     test::write_text(folder_ / "two.json", layers);
     EXPECT_EQ(read_coat((folder_ / "two.json").string()), two);
-    EXPECT_EQ(read_coat("MgF2"), SurfaceCoat(Coating::MgF2));
+    EXPECT_EQ(read_coat("MgF2"), camera::SurfaceCoat(camera::Coating::MgF2));
     EXPECT_TRUE(has(refusal([] { (void)read_coat("brodband"); }), "did you mean broadband?"));
     for (const auto& [bad, message] :
          {std::pair("\"filed\"", "/surfaces/0/coating: must be layers, or one of"),
@@ -182,10 +184,10 @@ TEST_F(LensText, CoatingsAreReadByNameAndByLayer) {
 TEST_F(LensText, TheExampleOfTheDocsIsALens) {
     const std::string docs = text_of_file(PETZVAL_ASSETS "/../docs/guide/lenses.md");
     const size_t begin = docs.find("```json\n") + 8;
-    const Prescription lens =
+    const camera::Prescription lens =
         read("a.json", docs.substr(begin, docs.find("```", begin) - begin)).lens;
     EXPECT_EQ(lens.name, "landscape");
-    const FirstOrder traced = first_order(Lens(lens), kLineD_nm);
+    const camera::FirstOrder traced = camera::first_order(camera::Lens(lens), kLineD_nm);
     EXPECT_NEAR(traced.focal_length_mm, *lens.stated_focal_length_mm, 0.1);
     EXPECT_NEAR(traced.back_focus_mm, lens.surfaces.back().thickness_mm, 0.1);
     EXPECT_NEAR(traced.fnumber, *lens.stated_fnumber, 0.2);
@@ -203,7 +205,8 @@ TEST_F(LensText, AStopOnGlassIsAPlaneThroughItsVertex) {
         const LensFile file = stop_at(radius);
         const auto& surfaces = file.lens.surfaces;
         ASSERT_EQ(surfaces.size(), 5u);
-        const LensSurface &plane = surfaces[size_t(stop)], &curved = surfaces[size_t(glass)];
+        const camera::LensSurface &plane = surfaces[size_t(stop)],
+                                  &curved = surfaces[size_t(glass)];
         EXPECT_TRUE(plane.stop);
         EXPECT_FALSE(curved.stop);
         EXPECT_EQ(plane.curvature_1_mm, 0);
@@ -214,12 +217,14 @@ TEST_F(LensText, AStopOnGlassIsAPlaneThroughItsVertex) {
         ASSERT_EQ(file.warnings.size(), 1u);
         EXPECT_TRUE(has(file.warnings[0], ": the stop is a curved surface"));
         // The lens is as it was.
-        const Lens lens(file.lens), plain(read("a.json", kJson).lens);
-        const FirstOrder a = first_order(lens, kLineD_nm), b = first_order(plain, kLineD_nm);
+        const camera::Lens lens(file.lens), plain(read("a.json", kJson).lens);
+        const camera::FirstOrder a = camera::first_order(lens, kLineD_nm),
+                                 b = camera::first_order(plain, kLineD_nm);
         EXPECT_NEAR(a.focal_length_mm, b.focal_length_mm, 1e-9);
         EXPECT_EQ(*file.lens.focus_group, (std::array{0, 3}));
     }
-    EXPECT_NEAR(first_order(Lens(stop_at("50,").lens), kLineD_nm).entrance_pupil_mm, 0, 1e-12);
+    EXPECT_NEAR(camera::first_order(camera::Lens(stop_at("50,").lens), kLineD_nm).entrance_pupil_mm,
+                0, 1e-12);
     // What moves to focus stays the same glass.
     const auto group = [&](const char* numbers, const char* radius) {
         const std::string text = with(none, "[0, 2]", numbers);
@@ -249,7 +254,7 @@ TEST_F(LensText, WithoutAStopItIsWhereTheAxialLightIsLimited) {
         const LensFile file = read("a.json", with(text, ", \"stop\": true", ""));
         EXPECT_TRUE(
             has(file.warnings.at(0), "a.json: /surfaces: none has \"stop\": true; the iris"));
-        return Lens(file.lens).stop();
+        return camera::Lens(file.lens).stop();
     };
     // The beam narrows towards the focus. At the last surface it is 0.91 as wide as at the first.
     EXPECT_EQ(stop_of(kJson), 3);
@@ -258,7 +263,7 @@ TEST_F(LensText, WithoutAStopItIsWhereTheAxialLightIsLimited) {
     const LensFile single = read("a.json", R"({"surfaces": [
         {"radius": 50, "thickness": 4, "medium": {"n": 1.5}, "semi_diameter": 9},
         {"radius": null, "thickness": 90, "medium": null, "semi_diameter": 6}]})");
-    EXPECT_EQ(Lens(single.lens).stop(), 2);
+    EXPECT_EQ(camera::Lens(single.lens).stop(), 2);
     EXPECT_TRUE(has(single.warnings.at(0), "at number 1, counted from 0"));
     for (const std::string& warning : single.warnings)
         EXPECT_FALSE(has(warning, "curved")) << "that surface is plane";
@@ -325,7 +330,7 @@ TEST_F(LensText, MutationsAreReadOrRefused) {
         int read_well = 0, refused_at_all = 0;
         for (int i = 0; i < 2000; ++i) {
             try {
-                const Lens lens(read_text(test::mutated(text, random)).lens);
+                const camera::Lens lens(read_text(test::mutated(text, random)).lens);
                 EXPECT_TRUE(std::isfinite(lens.film_mm()));
                 ++read_well;
             } catch (const InputError& error) {
@@ -339,4 +344,4 @@ TEST_F(LensText, MutationsAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include "camera/lens/lens.h"
 #include "tests/support/lens_text.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::kDat;
@@ -16,10 +16,10 @@ using test::kZmx;
 using test::LensText;
 using test::with;
 
-void expect_same_surfaces(const Prescription& lens, const Prescription& expected) {
+void expect_same_surfaces(const camera::Prescription& lens, const camera::Prescription& expected) {
     ASSERT_EQ(lens.surfaces.size(), expected.surfaces.size());
     for (size_t i = 0; i < lens.surfaces.size(); ++i) {
-        const LensSurface &a = lens.surfaces[i], &b = expected.surfaces[i];
+        const camera::LensSurface &a = lens.surfaces[i], &b = expected.surfaces[i];
         EXPECT_NEAR(a.curvature_1_mm, b.curvature_1_mm, 1e-14) << i;
         EXPECT_NEAR(a.thickness_mm, b.thickness_mm, 1e-12) << i;
         EXPECT_NEAR(a.semi_diameter_mm, b.semi_diameter_mm, 1e-12) << i;
@@ -35,9 +35,9 @@ void expect_same_surfaces(const Prescription& lens, const Prescription& expected
 }
 
 TEST_F(LensText, PbrtsDescriptionIsReadBack) {
-    Prescription expected = load_lens("double-gauss-100mm-f2").lens;
+    camera::Prescription expected = load_lens("double-gauss-100mm-f2").lens;
     std::string text = "# a lens\r\n\n";
-    for (LensSurface& s : expected.surfaces) {
+    for (camera::LensSurface& s : expected.surfaces) {
         const double n = s.glass ? s.glass->index(kLineD_nm) : 0;
         if (s.glass) s.glass = Glass{fmt::format("{}", n), IndexSeries{{{n, 0}}}};
         text += fmt::format("{}\t{} {} {} # surface\r\n",
@@ -52,14 +52,14 @@ TEST_F(LensText, PbrtsDescriptionIsReadBack) {
 }
 
 // In inches, with an object and an image.
-std::string zmx_of(const Prescription& lens) {
+std::string zmx_of(const camera::Prescription& lens) {
     std::string text =
         "VERS 140124 258 36214\nMODE SEQ\nNAME A lens of  mine\nUNIT IN X W X CM MR CPMM\n"
         "FNUM 2.8 0\nGCAT OHARA SCHOTT\nFTYP 0 0 3 3 0 0 0\nXFLN 0 0 0\nYFLN 0 -40 57\n"
         "SURF 0\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ INFINITY\n  DIAM 0 0 0 0 1 "
         "\"\"\n";
     int number = 1;
-    for (const LensSurface& s : lens.surfaces) {
+    for (const camera::LensSurface& s : lens.surfaces) {
         text +=
             fmt::format("SURF {}\n  TYPE {}\n  CURV {} 0 0 0 0 \"\"\n  DISZ {}\n  DIAM {} 1 0 0\n",
                         number++, s.asphere.empty() ? "STANDARD" : "EVENASPH",
@@ -84,7 +84,7 @@ std::string zmx_of(const Prescription& lens) {
 
 TEST_F(LensText, ZemaxsLensIsReadBack) {
     for (const char* name : {"canon-14mm-f2.8-asph", "double-gauss-100mm-f2"}) {
-        const Prescription expected = load_lens(name).lens;
+        const camera::Prescription expected = load_lens(name).lens;
         const std::string text = zmx_of(expected);
         std::string utf16 = "\xFF\xFE";
         for (const char c : text) (utf16 += c) += '\0';
@@ -121,7 +121,7 @@ TEST_F(LensText, ZemaxsStopBecomesAPlaneOfItsOwn) {
     EXPECT_EQ(moved[1].thickness_mm, 0);
     EXPECT_EQ(moved[2].thickness_mm, 43);
     EXPECT_FALSE(moved[2].glass);
-    EXPECT_NO_THROW(Lens(read("a.zmx", behind).lens));
+    EXPECT_NO_THROW(camera::Lens(read("a.zmx", behind).lens));
 }
 
 TEST_F(LensText, ZemaxsGlassesComeFromWhereTheyCan) {
@@ -223,4 +223,4 @@ TEST_F(LensText, ShowsNothingOfAFileThatIsNoLens) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

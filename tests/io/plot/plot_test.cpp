@@ -11,7 +11,7 @@
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::read_bytes;
@@ -195,4 +195,4 @@ TEST(Plot, NamesThePackageThatIsMissing) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::TemporaryFolder;
@@ -309,4 +309,4 @@ TEST(UserSpectra, WhatIsNeitherANameNorAFileIsToldTheNames) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -14,7 +14,7 @@
 #include "tests/support/statistics.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 const FilmShape kShape{{20, 10}, {3, 2, 17, 9}, {Aov::Depth, Aov::Normal}, Bins{380, 50, 7}};
@@ -272,4 +272,4 @@ TEST_F(StateFile, IsWholeOrWhatItWas) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -61,24 +61,25 @@ struct AnimatedGltf : TinyGltf {
     }
 };
 
-[[nodiscard]] inline GltfFile load_at(const std::filesystem::path& path,
-                                      const AnimationChoice& choice) {
-    PictureBudget pictures;
-    GltfChoices choices;
+[[nodiscard]] inline io::GltfFile load_at(const std::filesystem::path& path,
+                                          const io::AnimationChoice& choice) {
+    io::PictureBudget pictures;
+    io::GltfChoices choices;
     choices.animation = choice;
-    return load_gltf(path, FileScope::Anywhere, pictures, choices);
+    return io::load_gltf(path, io::FileScope::Anywhere, pictures, choices);
 }
 
-[[nodiscard]] inline GltfFile load_at(const TinyGltf& file, const AnimationChoice& choice) {
+[[nodiscard]] inline io::GltfFile load_at(const TinyGltf& file, const io::AnimationChoice& choice) {
     const TempFolder folder;
     return load_at(file.save_glb(folder.path / "test.glb"), choice);
 }
 
-[[nodiscard]] inline AnimationChoice moment(double time_s, std::vector<std::string> names = {}) {
+[[nodiscard]] inline io::AnimationChoice moment(double time_s,
+                                                std::vector<std::string> names = {}) {
     return {time_s, std::move(names), true};
 }
 
-[[nodiscard]] inline GltfFile load_at(const TinyGltf& file, double time_s) {
+[[nodiscard]] inline io::GltfFile load_at(const TinyGltf& file, double time_s) {
     return load_at(file, moment(time_s));
 }
 
@@ -113,7 +114,7 @@ struct AnimatedGltf : TinyGltf {
 }
 
 /// Expects that the instances stand where the shapes do, in whatever order.
-inline void expect_shapes(const std::vector<Shape>& wanted, const GltfFile& file,
+inline void expect_shapes(const std::vector<Shape>& wanted, const io::GltfFile& file,
                           double steps = 2) {
     const double tolerance = float_tolerance(wanted, steps);
     const double of_normals = 2 * steps * std::numeric_limits<float>::epsilon();

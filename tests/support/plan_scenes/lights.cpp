@@ -134,7 +134,7 @@ void add_glints(PlanWorld& w) {
         const V3f at = w.view.at(px, depth);
         w.ball(at, radius_px * w.view.pixel_m(depth), w.material(metal));
         // Out of focus it is larger.
-        const CameraRequest& camera = w.scene.request.camera;
+        const apps::CameraRequest& camera = w.scene.request.camera;
         w.covers(at, radius_px + (camera.lens_radius_m || camera.lens ? 12.f : 1.f));
     }
     const V3f from =

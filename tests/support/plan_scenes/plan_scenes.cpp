@@ -30,15 +30,15 @@ PlanScene plan_scene(uint32_t index) {
     return world.finish();
 }
 
-SceneRequest PlanScene::save(const std::filesystem::path& folder) const {
-    SceneRequest out = request;
+apps::SceneRequest PlanScene::save(const std::filesystem::path& folder) const {
+    apps::SceneRequest out = request;
     out.scene = folder / "scene.gltf";
     save_bytes(out.scene, {reinterpret_cast<const uint8_t*>(gltf.data()), gltf.size()});
     return out;
 }
 
 std::string PlanScene::options() const {
-    const CameraRequest& camera = request.camera;
+    const apps::CameraRequest& camera = request.camera;
     std::string out = fmt::format("--size {}x{} --look-at 0,0,0,0,0,-1 --tolerance {}%",
                                   request.size.x, request.size.y, 100 * tolerance);
     const auto add = [&](const char* name, const auto& value) {
@@ -54,7 +54,8 @@ std::string PlanScene::options() const {
     add("--focal-length", camera.focal_length_mm);
     if (camera.sensor_mm)
         out += fmt::format(" --sensor {}x{}", camera.sensor_mm->x, camera.sensor_mm->y);
-    if (camera.focus) out += fmt::format(" --focus {}", std::get<FocusDistance>(*camera.focus).m);
+    if (camera.focus)
+        out += fmt::format(" --focus {}", std::get<apps::FocusDistance>(*camera.focus).m);
     return out;
 }
 

@@ -14,16 +14,16 @@ namespace petzval::test {
 
 /// A scene, how it is seen, and where a simpler model may differ.
 struct PlanScene {
-    std::string kind;      ///< its name
-    bool decoy = false;    ///< of its kind, but simpler models are as good, or nearly
-    std::string gltf;      ///< text of the file
-    SceneRequest request;  ///< without the path of the scene
+    std::string kind;            ///< its name
+    bool decoy = false;          ///< of its kind, but simpler models are as good, or nearly
+    std::string gltf;            ///< text of the file
+    apps::SceneRequest request;  ///< without the path of the scene
     double tolerance = 0.01;
     /// Pixels outside show the same through all models. They may overlap.
     std::vector<Rect> matters;
 
     /// Writes the file, and returns the request for it.
-    [[nodiscard]] SceneRequest save(const std::filesystem::path& folder) const;
+    [[nodiscard]] apps::SceneRequest save(const std::filesystem::path& folder) const;
     /// Command-line options of petzval that show the same, but for the path of the scene.
     [[nodiscard]] std::string options() const;
 };

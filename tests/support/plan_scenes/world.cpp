@@ -99,7 +99,7 @@ void PlanWorld::pinhole(float fov_deg) {
 void PlanWorld::thin_lens(float fov_deg, float radius_m, float focus_m) {
     pinhole(fov_deg);
     scene.request.camera.lens_radius_m = radius_m;
-    scene.request.camera.focus = FocusDistance{focus_m};
+    scene.request.camera.focus = apps::FocusDistance{focus_m};
 }
 
 void PlanWorld::real_lens(const std::string& name, float focal_mm, float focus_m) {
@@ -109,7 +109,7 @@ void PlanWorld::real_lens(const std::string& name, float focal_mm, float focus_m
     view.tan_up = kWidth_mm / 2 / film_mm * float(view.size.y) / float(view.size.x);
     scene.request.camera.lens = name;
     scene.request.camera.sensor_mm = V2f(kWidth_mm, 24);
-    scene.request.camera.focus = FocusDistance{focus_m};
+    scene.request.camera.focus = apps::FocusDistance{focus_m};
     look();
 }
 

@@ -15,7 +15,7 @@
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
 
-namespace petzval {
+namespace petzval::apps {
 namespace {
 
 using test::read_bytes;
@@ -58,8 +58,10 @@ Film filled(Rect crop, uint32_t samples) {
     return film;
 }
 
-PictureRows developed(const Film& film, uint32_t samples) {
-    return develop(film, {0, samples}, describe_render(RenderSetup{}, RenderJob{}, PathOptions{}));
+io::PictureRows developed(const Film& film, uint32_t samples) {
+    return develop(
+        film, {0, samples},
+        describe_render(RenderSetup{}, integrator::RenderJob{}, integrator::PathOptions{}));
 }
 
 /// One channel of a file by name, through an OpenImageIO reader of its own.
@@ -93,7 +95,7 @@ constexpr Rect kCrop{2, 3, 7, 39};
 TEST(SpectralExr, HoldsEveryChannelOfTheFilm) {
     const TemporaryFolder folder;
     const auto path = folder / "a.exr";
-    write_exr(path, developed(filled(kCrop, 16), 16));
+    io::write_exr(path, developed(filled(kCrop, 16), 16));
 
     const auto input = OIIO::ImageInput::open(path.string());
     ASSERT_TRUE(input);
@@ -125,7 +127,7 @@ TEST(SpectralExr, HoldsEveryChannelOfTheFilm) {
 TEST(SpectralExr, SaysWhatTheNumbersMean) {
     const TemporaryFolder folder;
     const Rect crop{1, 0, 3, 1};
-    write_exr(folder / "a.exr", developed(filled(crop, 16), 16));
+    io::write_exr(folder / "a.exr", developed(filled(crop, 16), 16));
     const auto input = OIIO::ImageInput::open((folder / "a.exr").string());
     ASSERT_TRUE(input);
     const auto text = [&](const char* name) {
@@ -147,7 +149,7 @@ TEST(SpectralExr, SaysWhatTheNumbersMean) {
 
 TEST(SpectralExr, UnknownErrorsAreTheLargestFloatAndHaveNoMean) {
     const TemporaryFolder folder;
-    write_exr(folder / "a.exr", developed(filled(kCrop, 7), 7));
+    io::write_exr(folder / "a.exr", developed(filled(kCrop, 7), 7));
     for (const float error : channel_of(folder / "a.exr", "stderr.R")) EXPECT_EQ(error, FLT_MAX);
     const auto input = OIIO::ImageInput::open((folder / "a.exr").string());
     EXPECT_EQ(input->spec().find_attribute("petzval:meanRelativeError"), nullptr);
@@ -156,18 +158,18 @@ TEST(SpectralExr, UnknownErrorsAreTheLargestFloatAndHaveNoMean) {
 TEST(SpectralExr, NoBinsNoSpectralLayout) {
     const TemporaryFolder folder;
     const Film film({2, 2}, {0, 0, 2, 2}, {});
-    write_exr(folder / "a.exr", developed(film, 0));
-    const Picture p = read_picture(folder / "a.exr");
+    io::write_exr(folder / "a.exr", developed(film, 0));
+    const io::Picture p = io::read_picture(folder / "a.exr");
     EXPECT_EQ(p.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
     for (const auto& [name, value] : p.metadata) EXPECT_NE(name, "spectralLayoutVersion");
-    EXPECT_TRUE(spectral_channels(p).empty());
+    EXPECT_TRUE(io::spectral_channels(p).empty());
 }
 
 TEST(SpectralExr, EqualFilmsAreEqualFiles) {
     const TemporaryFolder folder;
     const Film film = filled(kCrop, 9);
-    write_exr(folder / "a.exr", developed(film, 9));
-    write_exr(folder / "b.exr", developed(filled(kCrop, 9), 9));
+    io::write_exr(folder / "a.exr", developed(film, 9));
+    io::write_exr(folder / "b.exr", developed(filled(kCrop, 9), 9));
     EXPECT_EQ(read_bytes(folder / "a.exr"), read_bytes(folder / "b.exr"));
 }
 
@@ -175,17 +177,17 @@ TEST(SpectralExr, AFullDiskLeavesTheOldFile) {
     const TemporaryFolder folder;
     const Film film = filled(kCrop, 9);
     const auto path = folder / "a.exr";
-    write_exr(path, developed(film, 9));
+    io::write_exr(path, developed(film, 9));
     const size_t whole = read_bytes(path).size();
     test::write_bytes(path, {'o', 'l', 'd'});
     // In the header, among the pixels, and at the last byte.
     for (const size_t bytes : {size_t{100}, whole / 2, whole - 1}) {
         const test::FileSizeLimit limit(bytes);
-        EXPECT_THROW(write_exr(path, developed(film, 9)), InputError) << bytes;
+        EXPECT_THROW(io::write_exr(path, developed(film, 9)), io::InputError) << bytes;
     }
     EXPECT_EQ(read_bytes(path), (std::vector<uint8_t>{'o', 'l', 'd'}));
     EXPECT_EQ(folder.count(), 1u);
-    EXPECT_THROW(write_exr("/dev/full", developed(film, 9)), InputError);
+    EXPECT_THROW(io::write_exr("/dev/full", developed(film, 9)), io::InputError);
 }
 
 // What a process that is killed in the middle of a file leaves behind.
@@ -197,25 +199,25 @@ TEST(SpectralExr, UntilItIsWholeAFileHasNoName) {
     if (unnamed < 0) GTEST_SKIP() << "this file system has no files without a name";
     ::close(unnamed);
     const Film film = filled(kCrop, 9);
-    PictureRows rows = developed(film, 9);
+    io::PictureRows rows = developed(film, 9);
     rows.row = [&, inner = rows.row](int y, float* row) {
         EXPECT_EQ(folder.count(), 1u) << y;
         EXPECT_EQ(read_bytes(path).size(), 3u) << y;
         inner(y, row);
         if (y == 34) throw std::runtime_error("enough");  // rows have been written by then
     };
-    EXPECT_THROW(write_exr(path, rows), std::runtime_error);
+    EXPECT_THROW(io::write_exr(path, rows), std::runtime_error);
     EXPECT_EQ(read_bytes(path), (std::vector<uint8_t>{'o', 'l', 'd'}));
     EXPECT_EQ(folder.count(), 1u);
 }
 
 TEST(SpectralLayout, NamesComeBack) {
-    EXPECT_EQ(spectral_channel(385), "S0.385,0nm");
-    EXPECT_EQ(spectral_channel(381.25), "S0.381,25nm");
-    EXPECT_EQ(spectral_channel(380 + 1. / 3), "S0.380,333nm");
-    EXPECT_EQ(spectral_channel(1000), "S0.1000,0nm");
+    EXPECT_EQ(io::spectral_channel(385), "S0.385,0nm");
+    EXPECT_EQ(io::spectral_channel(381.25), "S0.381,25nm");
+    EXPECT_EQ(io::spectral_channel(380 + 1. / 3), "S0.380,333nm");
+    EXPECT_EQ(io::spectral_channel(1000), "S0.1000,0nm");
     for (const double nm : {385., 400.5, 381.25, 729.875, 1000., 0.125})
-        EXPECT_EQ(spectral_channel_nm(spectral_channel(nm)), nm);
+        EXPECT_EQ(io::spectral_channel_nm(io::spectral_channel(nm)), nm);
 }
 
 TEST(SpectralLayout, ReadsWhatTheLayoutAllows) {
@@ -225,7 +227,7 @@ TEST(SpectralLayout, ReadsWhatTheLayoutAllows) {
         {"S0.0,385um", 385},    {"S0.385000pm", 385},      {"S0.0,000385mm", 385},
         {"S0.3,85e-8dam", 385}, {"S0.599,584916THz", 500}, {"S0.5,99584916e14Hz", 500}};
     for (const auto& [name, nm] : good) {
-        const auto read = spectral_channel_nm(name);
+        const auto read = io::spectral_channel_nm(name);
         ASSERT_TRUE(read) << name;
         EXPECT_NEAR(*read, nm, 1e-12 * nm) << name;
     }
@@ -234,13 +236,13 @@ TEST(SpectralLayout, ReadsWhatTheLayoutAllows) {
           "S0.385",     "S0.385.5nm", "S0.-5nm",       "S0.+5nm", "S0.infm",    "S0.nanm",
           "S0.3,8,5nm", "S0.385xm",   "S0.385e nm",    "S0.0nm",  "S0.1e999nm", "S0.385nm ",
           "s0.385nm",   "R",          "S0.385nm.385nm"})
-        EXPECT_FALSE(spectral_channel_nm(name)) << name;
+        EXPECT_FALSE(io::spectral_channel_nm(name)) << name;
 }
 
 TEST(SpectralLayout, ChannelsGoByWavelength) {
-    PictureLayout layout;
+    io::PictureLayout layout;
     layout.channels = {"S0.1000,0nm", "R", "S0.0,4um", "XYZ.X", "S0.385,0nm", "S1.385,0nm"};
-    const auto found = spectral_channels(layout);
+    const auto found = io::spectral_channels(layout);
     ASSERT_EQ(found.size(), 3u);
     EXPECT_EQ(found[0].index, 4u);
     EXPECT_EQ(found[1].index, 2u);
@@ -250,9 +252,9 @@ TEST(SpectralLayout, ChannelsGoByWavelength) {
 
 TEST(SpectralLayout, APixelsSpectrumIsItsBins) {
     const TemporaryFolder folder;
-    write_exr(folder / "a.exr", developed(filled(kCrop, 16), 16));
-    const Picture p = read_picture(folder / "a.exr");
-    const auto spectrum = spectrum_of_pixel(p, "a.exr", 6, 38);
+    io::write_exr(folder / "a.exr", developed(filled(kCrop, 16), 16));
+    const io::Picture p = io::read_picture(folder / "a.exr");
+    const auto spectrum = io::spectrum_of_pixel(p, "a.exr", 6, 38);
     ASSERT_EQ(spectrum.size(), 35u);
     for (size_t i = 0; i < 35; ++i) {
         EXPECT_EQ(spectrum[i][0], 385 + 10 * double(i));
@@ -260,8 +262,8 @@ TEST(SpectralLayout, APixelsSpectrumIsItsBins) {
         EXPECT_FLOAT_EQ(float(spectrum[i][1]), i == 5 ? l.bin_5 : i == 20 ? l.bin_20 : 0.f);
     }
     for (const V2i& at : {V2i(1, 3), V2i(2, 2), V2i(7, 38), V2i(6, 39), V2i(-1, 5)})
-        EXPECT_THROW((void)spectrum_of_pixel(p, "a.exr", at.x, at.y), ArgumentError);
+        EXPECT_THROW((void)io::spectrum_of_pixel(p, "a.exr", at.x, at.y), io::ArgumentError);
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::apps

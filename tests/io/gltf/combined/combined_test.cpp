@@ -71,7 +71,7 @@ std::vector<Corners> wanted_at(const TinyGltf& plain, double time_s) {
     return corners_only(posed);
 }
 
-GltfFile load_open(const TinyGltf& file, double time_s, double open_s) {
+io::GltfFile load_open(const TinyGltf& file, double time_s, double open_s) {
     return SavedGltf(file).at(time_s, open_s);
 }
 
@@ -106,7 +106,7 @@ TEST_F(Combined, InAnyPoseAMeshIsThatOfTheReference) {
 /// Texture coordinates and colours are those of the middle while the shutter is open.
 TEST_F(Combined, WhileTheShutterIsOpenBothEndsAreThoseOfTheReference) {
     each_file([](const CombinedGltf& file, const CombinedGltf& plain) {
-        const GltfFile open = load_open(file, 1, 1);
+        const io::GltfFile open = load_open(file, 1, 1);
         EXPECT_FALSE(contains_line(open.warnings, "broken"));
         const auto middle = truth_at(plain, 1);
         for (const float time : {0.f, 1.f}) {
@@ -133,7 +133,7 @@ TEST(CombinedSkin, APrimitiveWithoutJointsDoesNotMoveWithThem) {
         file.add_accessor<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
     file.add("skins", {{"joints", {0}}});
     file.add_root({{"mesh", 0}, {"skin", 0}, {"translation", {5, 0, 0}}});
-    const GltfFile open = load_open(file, 1, 1);
+    const io::GltfFile open = load_open(file, 1, 1);
     for (const float time : {0.f, 1.f})
         expect_same_corners(corners_only(truth_at(file, 0.5 + double(time))),
                             corners_of(open.scene, time));

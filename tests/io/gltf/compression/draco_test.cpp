@@ -8,7 +8,7 @@
 #include "io/gltf/compression/draco_mesh.h"
 #include "tests/support/meshes/encoders.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::Grid;
@@ -270,4 +270,4 @@ TEST(Draco, RefusesAttributesThatWouldFillTheMemory) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

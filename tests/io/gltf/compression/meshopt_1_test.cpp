@@ -12,7 +12,7 @@
 #include "io/gltf/compression/meshopt_filters.h"
 #include "tests/support/meshes/meshopt_version_1.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -230,4 +230,4 @@ TEST(MeshoptColor, IsOfFourComponents) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,7 +8,7 @@
 #include "io/gltf/compression/meshopt_filters.h"
 #include "tests/support/meshes/encoders.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using test::Grid;
@@ -207,4 +207,4 @@ TEST(MeshoptFilters, LeaveRubbishInBounds) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

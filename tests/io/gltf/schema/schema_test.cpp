@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// A table, and the path of a thing of it.
@@ -126,4 +126,4 @@ TEST(GltfSchema, WhatIsAbsentHasItsDefault) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

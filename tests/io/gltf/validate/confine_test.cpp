@@ -8,7 +8,7 @@
 #include "tests/support/full_gltf.h"
 #include "tests/support/refusal.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,4 +118,4 @@ TEST(Messages, DoNotShowTextThatIsNoJson) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@
 #include "io/base/error.h"
 #include "io/gltf/validate/source.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -160,4 +160,4 @@ TEST(GltfCorpus, FeatureFilesAreAcceptedUnlessMeantNotToBe) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

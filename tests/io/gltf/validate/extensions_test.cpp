@@ -11,7 +11,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 TEST(GltfExtensions, SayWhatTheyDoToThePictureUnlessTheyAreRendered) {
@@ -91,4 +91,4 @@ TEST(GltfExtensions, SayOfARefusalWhatToDo) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -9,7 +9,7 @@
 #include "io/gltf/validate/source.h"
 #include "tests/support/tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -135,4 +135,4 @@ TEST(GltfFuzz, ValuesOfAnyTypeAnywhere) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

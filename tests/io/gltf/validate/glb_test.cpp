@@ -6,7 +6,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr uint32_t magic = 0x46546C67, json_type = 0x4E4F534A, bin_type = 0x004E4942;
@@ -116,4 +116,4 @@ TEST(Glb, RefusesBrokenHeaders) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,7 +6,7 @@
 
 #include "tests/support/full_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -128,4 +128,4 @@ TEST(GltfLimits, SmallFilesThatAskForGigabytes) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

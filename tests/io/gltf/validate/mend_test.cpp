@@ -8,7 +8,7 @@
 #include "io/gltf/validate/source.h"
 #include "tests/support/full_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -340,4 +340,4 @@ TEST(GltfMend, DataInOddPlaces) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

@@ -5,7 +5,7 @@
 #include "io/gltf/validate/source.h"
 #include "tests/support/full_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -157,4 +157,4 @@ TEST(GltfRefusal, NodesAndWhatTheyHold) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

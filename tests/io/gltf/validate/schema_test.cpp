@@ -10,7 +10,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -130,4 +130,4 @@ TEST(GltfSchemaChecks, KnowTheExtensionOfEachRow) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

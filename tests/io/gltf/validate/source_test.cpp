@@ -10,7 +10,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/tiny_gltf.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -230,4 +230,4 @@ TEST(Accessor, SparseElementsReplaceTheOthers) {
 }
 
 }  // namespace
-}  // namespace petzval
+}  // namespace petzval::io

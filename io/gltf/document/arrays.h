@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/math/math.h"
-#include "io/gltf/model.h"
+#include "io/gltf/document/model.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// The accessor of an index, with its format and its bytes.
 [[nodiscard]] const GltfAccessor& accessor_of(const GltfModel&, int accessor);
@@ -27,4 +27,4 @@ namespace petzval {
 /// Reads VEC4 of unsigned integers: joints of a skin.
 [[nodiscard]] std::vector<std::array<uint32_t, 4>> read_joints(const GltfModel&, int accessor);
 
-}  // namespace petzval
+}  // namespace petzval::io

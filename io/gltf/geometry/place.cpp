@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/place.h"
+#include "io/gltf/geometry/place.h"
 
 #include <Imath/ImathBoxAlgo.h>
 #include <tiny_gltf.h>
@@ -10,19 +10,19 @@
 
 #include "io/base/error.h"
 #include "io/gltf/animation/thinning.h"
-#include "io/gltf/arrays.h"
+#include "io/gltf/document/arrays.h"
+#include "io/gltf/geometry/placement.h"
+#include "io/gltf/geometry/primitive.h"
+#include "io/gltf/geometry/skin.h"
+#include "io/gltf/geometry/strokes.h"
 #include "io/gltf/meshes/bake.h"
 #include "io/gltf/meshes/flat.h"
 #include "io/gltf/meshes/matrix.h"
 #include "io/gltf/meshes/repair.h"
 #include "io/gltf/meshes/tangents.h"
 #include "io/gltf/meshes/triangles.h"
-#include "io/gltf/placement.h"
-#include "io/gltf/primitive.h"
-#include "io/gltf/skin.h"
-#include "io/gltf/strokes.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Bytes that a triangle takes which is a light, in the tree of the lights too: rounded up.
@@ -446,4 +446,4 @@ void place_meshes(const GltfModel& gltf, const GltfNodes& nodes, const NodeMotio
     Placer(gltf, nodes, motion, variant, materials, scene, tally, stroke_radius_m).run();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "io/gltf/materials/spectral.h"
+#include "io/gltf/materials/textures.h"
 #include "io/gltf/schema/schema.h"
-#include "io/gltf/spectral.h"
-#include "io/gltf/textures.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Where the loader puts a property of a material.
 struct MaterialField {
@@ -55,4 +55,4 @@ class GltfMaterials {
     std::vector<std::optional<uint32_t>> used_;  ///< by material of the file; the default is last
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

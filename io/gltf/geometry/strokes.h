@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "io/gltf/materials.h"
-#include "io/gltf/primitive.h"
+#include "io/gltf/geometry/primitive.h"
+#include "io/gltf/materials/materials.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Shapes of points and lines: vertices as spheres, pairs of them as cylinders between spheres.
 struct StrokeShapes {
@@ -42,4 +42,4 @@ class Strokes {
     std::map<uint32_t, std::array<Group, 2>> by_material_;  ///< spheres and cylinders
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

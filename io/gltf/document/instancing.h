@@ -7,9 +7,9 @@
 
 #include "core/math/math.h"
 #include "io/base/json_cursor.h"
-#include "io/gltf/model.h"
+#include "io/gltf/document/model.h"
 
-namespace petzval {
+namespace petzval::io {
 
 inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
@@ -41,4 +41,4 @@ class InstancePlaces {
     std::vector<V4f> rotation_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

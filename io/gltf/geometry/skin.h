@@ -5,14 +5,14 @@
 #include <functional>
 #include <vector>
 
+#include "io/gltf/document/model.h"
 #include "io/gltf/meshes/source_mesh.h"
-#include "io/gltf/model.h"
 
 namespace tinygltf {
 struct Primitive;
 }
 
-namespace petzval {
+namespace petzval::io {
 
 /// For each joint of a skin its inverse bind matrix * the joint's place, which place_of(node)
 /// tells.
@@ -29,4 +29,4 @@ namespace petzval {
 [[nodiscard]] bool pose_by_skin(const GltfModel&, const std::vector<M44d>& joint_matrices,
                                 const tinygltf::Primitive&, SourceMesh&);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/model.h"
+#include "io/gltf/document/model.h"
 
 #include <tiny_gltf.h>
 
 #include "io/base/error.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 using nlohmann::json;
@@ -52,4 +52,4 @@ tinygltf::Model parse_model(const GltfSource& source) {
     return model;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/nodes.h"
+#include "io/gltf/document/nodes.h"
 
 #include <tiny_gltf.h>
 
@@ -10,7 +10,7 @@
 #include "io/base/named.h"
 #include "io/gltf/animation/node_place.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 int index_or_none(const JsonCursor& node, const char* key) {
@@ -122,4 +122,4 @@ GltfNodes flatten_nodes(const GltfModel& gltf, const std::optional<std::string>&
     return nodes;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/materials.h"
+#include "io/gltf/materials/materials.h"
 
 #include <cmath>
 #include <numbers>
@@ -8,7 +8,7 @@
 #include "io/base/json_parse.h"
 #include "io/gltf/validate/extras.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Factors of the core specification that stay as they are.
@@ -190,4 +190,4 @@ void GltfMaterials::count(const JsonCursor& json, const Material& material) {
     note(material.double_sided, "double-sided materials");
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/skin.h"
+#include "io/gltf/geometry/skin.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
 
-#include "io/gltf/arrays.h"
+#include "io/gltf/document/arrays.h"
+#include "io/gltf/geometry/primitive.h"
 #include "io/gltf/meshes/bake.h"
-#include "io/gltf/primitive.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Four joints and their weights for every vertex.
@@ -82,4 +82,4 @@ bool pose_by_skin(const GltfModel& gltf, const std::vector<M44d>& matrices,
     return true;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

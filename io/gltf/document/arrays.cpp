@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/arrays.h"
+#include "io/gltf/document/arrays.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// All elements, each a row of numbers; `undefined` is what one reads as that the file leaves out.
@@ -45,4 +45,4 @@ std::vector<std::array<uint32_t, 4>> read_joints(const GltfModel& gltf, int acce
     return read<uint32_t>(accessor_of(gltf, accessor), std::array<uint32_t, 4>{});
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/strokes.h"
+#include "io/gltf/geometry/strokes.h"
 
 #include <tiny_gltf.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/scene/geodesic_sphere.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Sides of a cylinder, and halvings of a sphere's edges: 16 sides and 320 triangles are round at
@@ -134,4 +134,4 @@ void Strokes::finish(Scene& scene, const GltfMaterials& materials) {
         }
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/primitive.h"
+#include "io/gltf/geometry/primitive.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "io/gltf/arrays.h"
+#include "io/gltf/document/arrays.h"
 #include "io/gltf/meshes/triangles.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// One primitive on its way to a Mesh.
@@ -156,4 +156,4 @@ StrokeSource read_stroke(const GltfModel& gltf, const tinygltf::Primitive& primi
     return source;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,13 +8,13 @@
 
 #include "core/scene/scene.h"
 #include "io/base/json_cursor.h"
-#include "io/gltf/model.h"
+#include "io/gltf/document/model.h"
+#include "io/gltf/document/tally.h"
 #include "io/gltf/schema/schema.h"
-#include "io/gltf/tally.h"
 #include "io/picture/colour_remarks.h"
 #include "io/picture/picture_budget.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Images of a file that are decoded already, by their number there.
 struct DecodedImages {
@@ -70,4 +70,4 @@ class GltfTextures {
     std::vector<Used> used_;  ///< by image of the file
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "core/math/math.h"
-#include "io/gltf/instancing.h"
+#include "io/gltf/document/instancing.h"
+#include "io/gltf/document/model.h"
 #include "io/gltf/meshes/matrix.h"
-#include "io/gltf/model.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// A node: indices of its mesh, skin and so on; -1 for none.
 struct GltfNode {
@@ -39,4 +39,4 @@ struct GltfNodes {
 /// tinygltf would take a kilobyte for each. Throws ArgumentError where there is no such scene.
 [[nodiscard]] GltfNodes flatten_nodes(const GltfModel&, const std::optional<std::string>& scene);
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -6,13 +6,13 @@
 
 #include "core/scene/scene.h"
 #include "io/gltf/animation/node_motion.h"
-#include "io/gltf/materials.h"
-#include "io/gltf/model.h"
-#include "io/gltf/nodes.h"
-#include "io/gltf/tally.h"
-#include "io/gltf/variants.h"
+#include "io/gltf/document/model.h"
+#include "io/gltf/document/nodes.h"
+#include "io/gltf/document/tally.h"
+#include "io/gltf/document/variants.h"
+#include "io/gltf/materials/materials.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Fills scene.meshes and scene.instances (and, through the materials, what they need). A mesh
 /// that stands once, or is posed by a skin, is stored in world space; any other once in its own
@@ -23,4 +23,4 @@ namespace petzval {
 void place_meshes(const GltfModel&, const GltfNodes&, const NodeMotion&, const GltfVariant&,
                   GltfMaterials&, Scene&, GltfTally&, std::optional<float> stroke_radius_m);
 
-}  // namespace petzval
+}  // namespace petzval::io

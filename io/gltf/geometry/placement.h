@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "io/gltf/animation/node_motion.h"
-#include "io/gltf/instancing.h"
-#include "io/gltf/model.h"
-#include "io/gltf/nodes.h"
-#include "io/gltf/tally.h"
+#include "io/gltf/document/instancing.h"
+#include "io/gltf/document/model.h"
+#include "io/gltf/document/nodes.h"
+#include "io/gltf/document/tally.h"
 #include "io/gltf/validate/budget.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Memory that is taken for each of many places: it is asked for before it is.
 class PlaceMemory {
@@ -86,4 +86,4 @@ class Places {
 [[nodiscard]] std::vector<Placement> find_placements(const GltfModel&, const GltfNodes&,
                                                      const NodeMotion&, Places&, GltfTally&);
 
-}  // namespace petzval
+}  // namespace petzval::io

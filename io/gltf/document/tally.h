@@ -8,7 +8,7 @@
 
 #include "io/base/warning_log.h"
 
-namespace petzval {
+namespace petzval::io {
 
 struct GltfTally {
     uint64_t zero_area_triangles = 0;
@@ -36,4 +36,4 @@ struct GltfTally {
     WarningLog warnings;             ///< one line each
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/textures.h"
+#include "io/gltf/materials/textures.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
@@ -11,7 +11,7 @@
 
 #include "io/image/picture_files.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 Wrap to_wrap(int mode) {
@@ -186,4 +186,4 @@ int32_t GltfTextures::use_image(size_t image) {
     return used.place = static_cast<int32_t>(images_.size()) - 1;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,7 +10,7 @@ namespace tinygltf {
 class Model;
 }
 
-namespace petzval {
+namespace petzval::io {
 
 /// Input of the loader's parts. What parse_model() names comes from `typed`, the rest from
 /// `source.json`, bytes from `source`.
@@ -39,4 +39,4 @@ template <class... Parts>
     return path;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

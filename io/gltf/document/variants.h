@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "io/gltf/model.h"
+#include "io/gltf/document/model.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Names of a file's variants, in its order; an unnamed one is empty.
 [[nodiscard]] std::vector<std::string> variant_names(const GltfModel&);
@@ -29,4 +29,4 @@ class GltfVariant {
     std::optional<size_t> index_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

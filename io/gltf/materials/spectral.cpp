@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/spectral.h"
+#include "io/gltf/materials/spectral.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "io/gltf/validate/extras.h"
 #include "io/spectra/spectra.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 /// Greatest index: its square, and what is computed with it, stays far from a float's end.
@@ -153,4 +153,4 @@ void GltfSpectral::apply_reflectance(const JsonCursor& extras,
     tally_.honoured.insert("measured reflectance " + printable(reflectance.name));
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/variants.h"
+#include "io/gltf/document/variants.h"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 #include "io/base/json_cursor.h"
 #include "io/base/named.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 constexpr const char* kMaterialVariants = "KHR_materials_variants";
@@ -47,4 +47,4 @@ int GltfVariant::material_of(int mesh, size_t primitive, int own) const {
     return own;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -4,15 +4,15 @@
 
 #include <vector>
 
+#include "io/gltf/document/model.h"
+#include "io/gltf/document/tally.h"
 #include "io/gltf/meshes/source_mesh.h"
-#include "io/gltf/model.h"
-#include "io/gltf/tally.h"
 
 namespace tinygltf {
 struct Primitive;
 }
 
-namespace petzval {
+namespace petzval::io {
 
 /// Kind of shapes that a primitive draws.
 enum class Drawing : uint8_t { Nothing, Points, Lines, Triangles };
@@ -44,4 +44,4 @@ struct StrokeSource {
 /// Accessor index of an attribute; -1 where the primitive has none of that name.
 [[nodiscard]] int attribute(const tinygltf::Primitive&, const std::string& name);
 
-}  // namespace petzval
+}  // namespace petzval::io

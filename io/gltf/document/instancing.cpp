@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/instancing.h"
+#include "io/gltf/document/instancing.h"
 
 #include <tiny_gltf.h>
 
-#include "io/gltf/arrays.h"
-#include "io/gltf/nodes.h"
+#include "io/gltf/document/arrays.h"
+#include "io/gltf/document/nodes.h"
 
-namespace petzval {
+namespace petzval::io {
 
 std::optional<GltfInstancing> read_instancing(const JsonCursor& node) {
     const auto extension = node.extension(kInstancing);
@@ -38,4 +38,4 @@ M44d InstancePlaces::at(size_t i) const {
     return matrix;
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

@@ -10,9 +10,9 @@
 
 #include "core/scene/scene.h"
 #include "io/base/json_cursor.h"
-#include "io/gltf/tally.h"
+#include "io/gltf/document/tally.h"
 
-namespace petzval {
+namespace petzval::io {
 
 /// Looks up what the file names, and adds metals, reflectances and illuminants to the scene,
 /// each once. Throws InputError with the JSON path for a name that is in no catalogue.
@@ -42,4 +42,4 @@ class GltfSpectral {
     std::map<std::string, int32_t> reflectances_;  ///< places in the scene
 };
 
-}  // namespace petzval
+}  // namespace petzval::io

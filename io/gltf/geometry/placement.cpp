@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/placement.h"
+#include "io/gltf/geometry/placement.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
@@ -10,10 +10,10 @@
 
 #include "io/base/error.h"
 #include "io/base/machine.h"
-#include "io/gltf/arrays.h"
+#include "io/gltf/document/arrays.h"
 #include "io/gltf/meshes/flat.h"
 
-namespace petzval {
+namespace petzval::io {
 namespace {
 
 bool fits_floats(const M44d& m) {
@@ -147,4 +147,4 @@ std::vector<Placement> find_placements(const GltfModel& gltf, const GltfNodes& n
     return Grouping(gltf, nodes, motion, places, tally).run();
 }
 
-}  // namespace petzval
+}  // namespace petzval::io

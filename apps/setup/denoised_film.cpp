@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,96 +15,20 @@
 namespace petzval::apps {
 namespace {
 
-/// Side of the blocks whose means are taken as independent of each other.
-constexpr int kBlock_px = 8;
-/// Two-sided 95 % of a normal distribution.
-constexpr double kDeviations = 1.96;
-
-// By how much wider such bounds are where a deviation is known from few numbers, which are its
-// degrees of freedom and one more: Student's t over kDeviations, Abramowitz and Stegun
-// 1964, 26.7.5.
-double widening(double numbers) {
-    constexpr double z = kDeviations, cube = z * z * z, fifth = cube * z * z;
-    const double degrees = numbers - 1;
-    if (degrees < 3) return (degrees < 2 ? 12.706 : 4.303) / z;  // too few for the series
-    return 1 + ((cube + z) / 4 + (5 * fifth + 16 * cube + 3 * z) / (96 * degrees)) / (degrees * z);
-}
-
-/// Sums over blocks of a picture, by block.
-struct Blocks {
-    int across = 0, down = 0;
-    std::vector<double> sum, count;
-    /// Variances of half of the samples in the same units, and their squares.
-    std::vector<double> variance, variance_squares;
-
-    Blocks(int width, int height)
-        : across((width + kBlock_px - 1) / kBlock_px),
-          down((height + kBlock_px - 1) / kBlock_px),
-          sum(static_cast<size_t>(across) * static_cast<size_t>(down)),
-          count(sum.size()),
-          variance(sum.size()),
-          variance_squares(sum.size()) {}
-    void add(int x, int y, double value, double its_variance) {
-        const auto at = static_cast<size_t>(y / kBlock_px * across + x / kBlock_px);
-        sum[at] += value;
-        variance[at] += its_variance;
-        variance_squares[at] += its_variance * its_variance;
-        count[at] += 1;
-    }
-    /// Mean over a rectangle of blocks, and its deviation: from how the blocks part, or what it is
-    /// where noise that is in single pixels is as likely in others about them. Errors of
-    /// neighbours are alike, as they share a window: two by two blocks are taken together.
-    [[nodiscard]] DenoisedError over(const Rect& blocks) const;
-};
-
-DenoisedError Blocks::over(const Rect& r) const {
-    double all = 0, pixels = 0;
-    const auto each = [&](const auto& use) {
-        for (int y = r.y0; y < r.y1; y += 2)
-            for (int x = r.x0; x < r.x1; x += 2) {
-                double s = 0, n = 0;
-                for (int v = y; v < std::min(y + 2, r.y1); ++v)
-                    for (int u = x; u < std::min(x + 2, r.x1); ++u) {
-                        s += sum[static_cast<size_t>(v * across + u)];
-                        n += count[static_cast<size_t>(v * across + u)];
-                    }
-                use(s, n);
-            }
-    };
-    each([&](double s, double n) { all += s, pixels += n; });
-    const double mean = all / pixels;
-    double chance = 0;  // the product of two halves' noise, in a block
-    for (int y = r.y0; y < r.y1; ++y)
-        for (int x = r.x0; x < r.x1; ++x) {
-            const auto at = static_cast<size_t>(y * across + x);
-            if (!(variance[at] > 0)) continue;
-            // Pixels that have the noise, by how even it is (Kish 1965); but no less than 4 x 4.
-            constexpr double kLeastShare = 0.25;
-            const double alike = variance[at] * variance[at] / variance_squares[at];
-            chance += variance[at] * variance[at] / std::max(alike, kLeastShare * count[at]);
-        }
-    double squares = 0, groups = 0;
-    each([&](double s, double n) {
-        squares += (s - n * mean) * (s - n * mean);
-        groups += 1;
-    });
-    if (groups < 2) return {mean, std::sqrt(std::max(all * all, chance)) / pixels};
-    const double parted = squares * groups / (groups - 1);
-    return {mean, widening(groups) * std::sqrt(std::max(parted, chance)) / pixels};
-}
-
 // Error about each block. Squares of blocks double until one knows its error well enough; what a
 // smaller one knows to be less stays.
-std::vector<float> errors_about(const Blocks& blocks) {
+std::vector<float> errors_about(const ErrorBlocks& blocks) {
     constexpr double kKnown = 0.6;  // of the square: 30 % of the root
-    std::vector<float> out(blocks.sum.size(), std::numeric_limits<float>::infinity());
+    std::vector<float> out(
+        static_cast<size_t>(blocks.across()) * static_cast<size_t>(blocks.down()),
+        std::numeric_limits<float>::infinity());
     std::vector<bool> known(out.size());
-    const int longest = std::max(blocks.across, blocks.down);
+    const int longest = std::max(blocks.across(), blocks.down());
     const auto look = [&](int side) {
-        for (int y = 0; y < blocks.down; y += side)
-            for (int x = 0; x < blocks.across; x += side) {
-                const Rect square{x, y, std::min(x + side, blocks.across),
-                                  std::min(y + side, blocks.down)};
+        for (int y = 0; y < blocks.down(); y += side)
+            for (int x = 0; x < blocks.across(); x += side) {
+                const Rect square{x, y, std::min(x + side, blocks.across()),
+                                  std::min(y + side, blocks.down())};
                 const DenoisedError error = blocks.over(square);
                 const bool knows = error.deviation <= kKnown * error.squared;
                 // An estimate below 0 is noise, and not a better bound.
@@ -111,7 +36,7 @@ std::vector<float> errors_about(const Blocks& blocks) {
                 const auto told = static_cast<float>(std::sqrt(knows ? error.squared : most));
                 for (int v = square.y0; v < square.y1; ++v)
                     for (int u = square.x0; u < square.x1; ++u) {
-                        const auto at = static_cast<size_t>(v * blocks.across + u);
+                        const auto at = static_cast<size_t>(v * blocks.across() + u);
                         if (!known[at]) out[at] = std::min(out[at], told);
                         known[at] = known[at] || knows;
                     }
@@ -163,26 +88,27 @@ double floor_of(const integrator::Denoised& picture) {
 
 }  // namespace
 
-double DenoisedError::least() const {
-    return std::sqrt(std::max(0., squared - kDeviations * deviation));
+Rect DenoisedFilm::blocks_of(const Rect& part_px) const {
+    const auto nearest = [](int from_px, int to_px, int all) {
+        const int first = std::min((from_px + kErrorBlock_px / 2) / kErrorBlock_px, all - 1);
+        const int last = (to_px + kErrorBlock_px / 2) / kErrorBlock_px;
+        return std::array{first, std::clamp(last, first + 1, all)};
+    };
+    const Rect& crop = picture.crop;
+    const auto [x0, x1] = nearest(part_px.x0 - crop.x0, part_px.x1 - crop.x0, blocks.across());
+    const auto [y0, y1] = nearest(part_px.y0 - crop.y0, part_px.y1 - crop.y0, blocks.down());
+    return {x0, y0, x1, y1};
 }
 
-double DenoisedError::most() const {
-    return std::sqrt(std::max(0., squared + kDeviations * deviation));
-}
-
-double DenoisedError::value() const {
-    return is_at_most() ? most() : std::sqrt(squared);
+std::string text_of(const DenoisedError& error) {
+    return error.is_at_most() ? fmt::format("at most {}", io::percent(error.most()))
+                              : fmt::format("{} ({} to {})", io::percent(error.value()),
+                                            io::percent(error.least()), io::percent(error.most()));
 }
 
 std::string text_of(const DenoisedFilm& film) {
-    const auto text = [](const DenoisedError& error) {
-        return error.is_at_most()
-                   ? fmt::format("at most {}", io::percent(error.most()))
-                   : fmt::format("{} ({} to {})", io::percent(error.value()),
-                                 io::percent(error.least()), io::percent(error.most()));
-    };
-    return fmt::format("denoised: error {}, and {} without", text(film.error), text(film.noisy));
+    return fmt::format("denoised: error {}, and {} without", text_of(film.error),
+                       text_of(film.noisy));
 }
 
 std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film,
@@ -194,7 +120,8 @@ std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film,
     out->picture = std::move(*picture);
     out->floor_nits = floor_of(out->picture);
     const Rect crop = film.crop();
-    Blocks denoised(crop.width(), crop.height()), noisy = denoised;
+    ErrorBlocks& denoised = out->blocks = ErrorBlocks(crop.width(), crop.height());
+    ErrorBlocks& noisy = out->noisy_blocks = denoised;
     Surroundings surroundings(out->picture);
     for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x) {
@@ -215,15 +142,15 @@ std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film,
             denoised.add(x - crop.x0, y - crop.y0, squares, variance);
             noisy.add(x - crop.x0, y - crop.y0, noise, 0);
         }
-    const Rect all{0, 0, denoised.across, denoised.down};
+    const Rect all{0, 0, denoised.across(), denoised.down()};
     out->error = denoised.over(all);
     out->noisy = noisy.over(all);
     const std::vector<float> about = errors_about(denoised);
     out->error_about.reserve(out->picture.colour.size());
     for (int y = 0; y < crop.height(); ++y)
         for (int x = 0; x < crop.width(); ++x)
-            out->error_about.push_back(
-                about[static_cast<size_t>(y / kBlock_px * denoised.across + x / kBlock_px)]);
+            out->error_about.push_back(about[static_cast<size_t>(
+                y / kErrorBlock_px * denoised.across() + x / kErrorBlock_px)]);
     return out;
 }
 

@@ -7,26 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "apps/setup/error_blocks.h"
 #include "integrator/denoise/denoise.h"
 #include "integrator/render/executor.h"
 
 namespace petzval::apps {
-
-/// Error of a picture or of a part of it: the root of the mean, over its pixels and R, G and B, of
-/// squared error / (m^2 + floor^2), m being the mean of what is denoised over 7 x 7 pixels. By the
-/// pixel's own brightness an error would look too small: light that is there by chance makes both.
-struct DenoisedError {
-    double squared = 0;    ///< by the two halves, without bias: it may be negative
-    double deviation = 0;  ///< standard error of `squared`, wider where few blocks tell it
-
-    /// Bounds of the root with a chance of 95 %.
-    [[nodiscard]] double least() const;
-    [[nodiscard]] double most() const;
-    /// Whether the halves tell no more than that it is at most most().
-    [[nodiscard]] bool is_at_most() const { return squared < 2 * deviation; }
-    /// The root; most() where that is all that is known.
-    [[nodiscard]] double value() const;
-};
 
 /// What a film with halves shows when it is denoised.
 struct DenoisedFilm {
@@ -37,8 +22,14 @@ struct DenoisedFilm {
     /// Error about each pixel: of the smallest square that tells it to about a third, from 32
     /// pixels on; or the least upper bound of squares about it, where that is less.
     std::vector<float> error_about;
+    ErrorBlocks blocks, noisy_blocks;  ///< of both, by which parts of the picture are told
+
+    /// Rectangle of the blocks that fill a part of the picture best, one at least.
+    [[nodiscard]] Rect blocks_of(const Rect& part_px) const;
 };
 
+/// The error and its bounds, or that it is at most so large.
+[[nodiscard]] std::string text_of(const DenoisedError&);
 /// What is known of the error, in a sentence.
 [[nodiscard]] std::string text_of(const DenoisedFilm&);
 

@@ -133,24 +133,32 @@ std::string why_not_comparable(const Picture& a, const Picture& b) {
             a.for_display ? "former" : "latter", a.for_display ? "latter" : "former");
     std::string why = why_not_the_same_wavelengths(a, b);
     if (!why.empty()) return why;
-    const auto in_a = sorted(a.channels), in_b = sorted(b.channels);
-    if (in_a != in_b)
-        return fmt::format("channels only in the former: {}; only in the latter: {}",
-                           only_in(in_a, in_b), only_in(in_b, in_a));
+    const auto is_in_a = [&](const std::string& name) { return channel_index(a, name) >= 0; };
+    if (std::ranges::none_of(b.channels, is_in_a))
+        return "no channel is in both: " + channels_of_one(a, b);
     return "";
+}
+
+std::string channels_of_one(const Picture& a, const Picture& b) {
+    const auto in_a = sorted(a.channels), in_b = sorted(b.channels);
+    if (in_a == in_b) return "";
+    return fmt::format("channels only in the former: {}; only in the latter: {}",
+                       only_in(in_a, in_b), only_in(in_b, in_a));
 }
 
 std::vector<LayerDifference> compare(const Picture& a, const Picture& b) {
     const std::optional<double> floor = floor_against(b);
     std::vector<Sums> layers;
     for (size_t c = 0; c < b.channels.size(); ++c) {
+        const int its_index = channel_index(a, b.channels[c]);
+        if (its_index < 0) continue;
+        const auto in_a = static_cast<size_t>(its_index);
         Sums& sums = sums_of(layers, layer_of(b.channels[c]), floor);
-        const auto in_a = static_cast<size_t>(channel_index(a, b.channels[c]));
         for (int y = 0; y < b.height; ++y)
             for (int x = 0; x < b.width; ++x) {
-                const size_t pixel = (size_t(y) * b.width + x) * b.channels.size();
-                sums.add(a.pixels[pixel + in_a], b.pixels[pixel + c], b.x + x, b.y + y,
-                         b.channels[c]);
+                const size_t pixel = size_t(y) * b.width + x;
+                sums.add(a.pixels[pixel * a.channels.size() + in_a],
+                         b.pixels[pixel * b.channels.size() + c], b.x + x, b.y + y, b.channels[c]);
             }
     }
     std::vector<LayerDifference> results;
@@ -158,14 +166,14 @@ std::vector<LayerDifference> compare(const Picture& a, const Picture& b) {
     return results;
 }
 
-std::vector<LayerDifference> compare_files(const std::filesystem::path& a,
-                                           const std::filesystem::path& b, PictureBudget budget) {
+FileDifferences compare_files(const std::filesystem::path& a, const std::filesystem::path& b,
+                              PictureBudget budget) {
     const Picture picture_a = read_picture(a, budget);
     const Picture picture_b = read_picture(b, budget);
     const std::string why = why_not_comparable(picture_a, picture_b);
     if (!why.empty())
         throw InputError(a.string(), "", "differs in kind from {}: {}", b.string(), why);
-    return compare(picture_a, picture_b);
+    return {compare(picture_a, picture_b), channels_of_one(picture_a, picture_b)};
 }
 
 }  // namespace petzval::io

@@ -40,16 +40,23 @@ struct LayerDifference {
 /// Nothing where it has neither R, G and B nor Y, or holds values for a display.
 [[nodiscard]] std::optional<double> floor_against(const Picture& reference);
 
-/// Reason why two pictures cannot be compared (size, crop, light or display values, wavelengths,
-/// channels by name), where a
-/// is called the former, b the latter; empty where they can.
+/// Reason why two pictures cannot be compared (size, crop, light or display values, wavelengths, no
+/// channel in both), where a is called the former, b the latter; empty where they can.
 [[nodiscard]] std::string why_not_comparable(const Picture& a, const Picture& b);
-/// Differences of a from the reference b, layer by layer in b's order. The pictures must be
-/// comparable; the order of the channels may differ.
+/// Names of the channels that only one of two pictures has; empty where both have the same.
+[[nodiscard]] std::string channels_of_one(const Picture& a, const Picture& b);
+/// Differences of a from the reference b, layer by layer in b's order, by the channels that both
+/// have. The pictures must be comparable; the order of the channels may differ.
 [[nodiscard]] std::vector<LayerDifference> compare(const Picture& a, const Picture& b);
+
+/// What compare_files() finds.
+struct FileDifferences {
+    std::vector<LayerDifference> layers;
+    std::string channels_of_one;  ///< those that are not compared
+};
 /// Differences between two picture files. Throws InputError where they cannot be read or compared.
-[[nodiscard]] std::vector<LayerDifference> compare_files(const std::filesystem::path& a,
-                                                         const std::filesystem::path& b,
-                                                         PictureBudget = PictureBudget());
+[[nodiscard]] FileDifferences compare_files(const std::filesystem::path& a,
+                                            const std::filesystem::path& b,
+                                            PictureBudget = PictureBudget());
 
 }  // namespace petzval::io

@@ -53,11 +53,13 @@ void require_within(double limit, const DiffOptions& o, const io::LayerDifferenc
 }
 
 void diff_command(const DiffOptions& o) {
-    const std::vector<io::LayerDifference> layers =
+    const auto [layers, channels_of_one] =
         io::compare_files(o.a, o.b, o.order.render.scene.pictures());
     for (const io::LayerDifference& layer : layers) print_layer(layer);
+    if (!channels_of_one.empty()) print_line("not compared: " + channels_of_one);
     std::fflush(stdout);  // the result comes before a complaint
     if (!o.fail_above) return;
+    if (!channels_of_one.empty()) throw io::InputError(o.a, "", channels_of_one);
     for (const io::LayerDifference& layer : layers) require_within(*o.fail_above, o, layer);
 }
 
@@ -65,9 +67,9 @@ void add_diff(CLI::App& image) {
     auto options = std::make_shared<DiffOptions>();
     CLI::App* diff = image.add_subcommand("diff", "how far a picture is from a reference");
     diff->add_option("a", options->a, "picture")->required();
-    diff->add_option("b", options->b, "reference of the same size and channels")->required();
+    diff->add_option("b", options->b, "reference of the same size")->required();
     diff->add_option("--fail-above", options->fail_above,
-                     "exit with 1 if the RMSE of any layer is above this")
+                     "exit with 1 if the RMSE of any layer is above this, or a channel is missing")
         ->transform(number_between(0, std::numeric_limits<float>::max()));
     add_field_option(*diff, options->order, "max-memory");
     diff->footer(fmt::format(

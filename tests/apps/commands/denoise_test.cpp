@@ -40,6 +40,27 @@ TEST_F(CliDenoise, TheDenoisedPictureStandsBesideTheOther) {
     EXPECT_GT(json["noisy_picture"]["error"], 0);
 }
 
+// The whole as the render said it, then each region; a cropped frame has regions of its crop.
+TEST_F(CliDenoise, AStateTellsItsErrorByRegion) {
+    const Finished run = denoised({"--spp", "16", "--crop", "8,8,40,32"}, "a.state");
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const Finished said = run_petzval({"image", "noise", path("a.state"), "--regions", "2"});
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_EQ(std::ranges::count(said.out, '\n'), 5);
+    const std::string error = "denoised: error ";
+    const size_t at = run.err.find(error) + error.size();
+    EXPECT_THAT(said.out, HasSubstr(run.err.substr(at, run.err.find(", and", at) - at)));
+    EXPECT_THAT(said.out, HasSubstr("\n28,24,20,16 "));
+
+    ASSERT_EQ(run_petzval({"render", scene_, "--size", "16x16", "--spp", "1", "--quiet", "-o",
+                           path("plain.state")})
+                  .exit_code,
+              0);
+    const Finished plain = run_petzval({"image", "noise", path("plain.state")});
+    EXPECT_EQ(plain.exit_code, 1);
+    EXPECT_THAT(plain.err, HasSubstr("render it with --denoise"));
+}
+
 TEST_F(CliDenoise, ADisplayShowsTheDenoisedPicture) {
     ASSERT_EQ(denoised({"--spp", "4", "-o", path("a.png")}).exit_code, 0);
     ASSERT_EQ(run_petzval({"image", "view", path("a.exr"), "-o", path("noisy.png")}).exit_code, 0);

@@ -106,9 +106,13 @@ TEST_F(CliSpectrum, DiffSaysWhatIsNotTheSame) {
     EXPECT_NE(diff(a, spectral("c.exr", {385, 395}))
                   .find("3 wavelengths, up to 405 nm, against 2, up to 395 nm"),
               std::string::npos);
-    EXPECT_NE(diff(a, spectral("d.exr", {385, 395, 405}, {"R", "G", "Y"}))
-                  .find("channels only in the former: B; only in the latter: Y"),
+    const std::string other = spectral("d.exr", {385, 395, 405}, {"R", "G", "Y"}),
+                      only = "channels only in the former: B; only in the latter: Y";
+    EXPECT_NE(run_petzval({"image", "diff", a, other}).out.find("not compared: " + only),
               std::string::npos);
+    const Finished above = run_petzval({"image", "diff", a, other, "--fail-above", "1e30"});
+    EXPECT_EQ(above.exit_code, 1);
+    EXPECT_NE(above.err.find(only), std::string::npos);
 }
 
 }  // namespace

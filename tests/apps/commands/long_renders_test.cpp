@@ -45,7 +45,7 @@ TEST_F(LongRenders, KilledAtAnyMomentGivesTheBytesOfOneRun) {
     Words next =
         words({"--spp", spp, "-o", path("r.exr"), "--checkpoint", "0.05s", "--progress", "json"});
     std::mt19937 random(1);
-    int killed = 0, kept = 0;
+    int killed = 0, kept = 0, in_the_instant = 0;
     uint64_t before = 0;
     for (int i = 0; i < kills; ++i) {
         Process render(next);
@@ -56,8 +56,14 @@ TEST_F(LongRenders, KilledAtAnyMomentGivesTheBytesOfOneRun) {
         render.signal(SIGKILL);
         if (render.wait().exit_code == 0) break;
         ++killed;
-        for (const std::string& name : listing())
+        for (const std::string& name : listing()) {
+            if (name.starts_with(".petzval-")) {  // before it gets its name: io/file/atomic_file.h
+                ++in_the_instant;
+                std::filesystem::remove(path(name));
+                continue;
+            }
             EXPECT_TRUE(name == "studio.glb" || name == "w.exr" || name == "r.state") << name;
+        }
         if (!std::filesystem::exists(path("r.state"))) continue;
         next = {"resume", path("r.state")};
         const Finished looked = merge({"r.state"}, {"-o", path("m.exr")});
@@ -69,6 +75,7 @@ TEST_F(LongRenders, KilledAtAnyMomentGivesTheBytesOfOneRun) {
         kept += share > before;
         before = share;
     }
+    EXPECT_LE(in_the_instant, 1);
     EXPECT_GE(killed, 2);
     EXPECT_GE(kept, 1) << "checkpoints go forward";
     const Finished last = run_petzval(next);

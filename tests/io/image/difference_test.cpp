@@ -155,7 +155,7 @@ TEST(ImageDiff, RefusesPicturesOfAnotherKind) {
     const Picture p = noise(4, 3, {"R", "G", "B"});
     EXPECT_EQ(why_not_comparable(p, p), "");
     EXPECT_NE(why_not_comparable(p, noise(3, 4, {"R", "G", "B"})), "");
-    EXPECT_NE(why_not_comparable(p, noise(4, 3, {"R", "G", "B", "A"})), "");
+    EXPECT_NE(why_not_comparable(p, noise(4, 3, {"A"})), "");
     Picture crop = p;
     crop.x = 1;
     EXPECT_NE(why_not_comparable(p, crop), "");
@@ -163,7 +163,24 @@ TEST(ImageDiff, RefusesPicturesOfAnotherKind) {
     write_exr(folder / "a.exr", p);
     write_exr(folder / "b.exr", noise(3, 4, {"R", "G", "B"}));
     EXPECT_THROW((void)compare_files(folder / "a.exr", folder / "b.exr"), InputError);
-    EXPECT_EQ(compare_files(folder / "a.exr", folder / "a.exr").at(0).rmse, 0.);
+    EXPECT_EQ(compare_files(folder / "a.exr", folder / "a.exr").layers.at(0).rmse, 0.);
+}
+
+// A picture that states its errors, and one that does not.
+TEST(ImageDiff, ChannelsOfBothAreCompared) {
+    const Picture plain = picture(2, 1, {"R", "G", "B"}, {1, 2, 3, 4, 5, 6});
+    const Picture stated = picture(2, 1, {"R", "stderr.R", "G", "B"}, {1, 9, 2, 3, 4, 9, 5, 8});
+    for (const bool exchanged : {false, true}) {
+        const Picture &a = exchanged ? plain : stated, &b = exchanged ? stated : plain;
+        EXPECT_EQ(why_not_comparable(a, b), "");
+        const std::vector<LayerDifference> layers = compare(a, b);
+        ASSERT_EQ(layers.size(), 1u);
+        EXPECT_EQ(layers[0].value_count, 6u);
+        EXPECT_EQ(layers[0].max_abs, 2.);
+        EXPECT_EQ(layers[0].max_channel, "B");
+        EXPECT_NE(channels_of_one(a, b).find("stderr.R"), std::string::npos);
+    }
+    EXPECT_EQ(channels_of_one(plain, plain), "");
 }
 
 TEST(ImageDiff, DisplayValuesAreNotComparedWithLight) {

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/setup/error_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval::apps {
+namespace {
+
+// By how much wider such bounds are where a deviation is known from few numbers, which are its
+// degrees of freedom and one more: Student's t over kDeviations, Abramowitz and Stegun
+// 1964, 26.7.5.
+double widening(double numbers) {
+    constexpr double z = kDeviations, cube = z * z * z, fifth = cube * z * z;
+    const double degrees = numbers - 1;
+    if (degrees < 3) return (degrees < 2 ? 12.706 : 4.303) / z;  // too few for the series
+    return 1 + ((cube + z) / 4 + (5 * fifth + 16 * cube + 3 * z) / (96 * degrees)) / (degrees * z);
+}
+
+}  // namespace
+
+double DenoisedError::least() const {
+    return std::sqrt(std::max(0., squared - kDeviations * deviation));
+}
+
+double DenoisedError::most() const {
+    return std::sqrt(std::max(0., squared + kDeviations * deviation));
+}
+
+double DenoisedError::value() const {
+    return is_at_most() ? most() : std::sqrt(squared);
+}
+
+ErrorBlocks::ErrorBlocks(int width_px, int height_px)
+    : across_((width_px + kErrorBlock_px - 1) / kErrorBlock_px),
+      down_((height_px + kErrorBlock_px - 1) / kErrorBlock_px),
+      sum_(static_cast<size_t>(across_) * static_cast<size_t>(down_)),
+      count_(sum_.size()),
+      variance_(sum_.size()),
+      variance_squares_(sum_.size()) {}
+
+void ErrorBlocks::add(int x, int y, double squared_error, double variance) {
+    const auto at = static_cast<size_t>(y / kErrorBlock_px * across_ + x / kErrorBlock_px);
+    sum_[at] += squared_error;
+    variance_[at] += variance;
+    variance_squares_[at] += variance * variance;
+    count_[at] += 1;
+}
+
+// Errors of neighbours are alike, as they share a window: two by two blocks are taken together.
+DenoisedError ErrorBlocks::over(const Rect& r) const {
+    double all = 0, pixels = 0;
+    const auto each = [&](const auto& use) {
+        for (int y = r.y0; y < r.y1; y += 2)
+            for (int x = r.x0; x < r.x1; x += 2) {
+                double s = 0, n = 0;
+                for (int v = y; v < std::min(y + 2, r.y1); ++v)
+                    for (int u = x; u < std::min(x + 2, r.x1); ++u) {
+                        s += sum_[static_cast<size_t>(v * across_ + u)];
+                        n += count_[static_cast<size_t>(v * across_ + u)];
+                    }
+                use(s, n);
+            }
+    };
+    each([&](double s, double n) { all += s, pixels += n; });
+    const double mean = all / pixels;
+    double chance = 0;  // the product of two halves' noise, in a block
+    for (int y = r.y0; y < r.y1; ++y)
+        for (int x = r.x0; x < r.x1; ++x) {
+            const auto at = static_cast<size_t>(y * across_ + x);
+            if (!(variance_[at] > 0)) continue;
+            // Pixels that have the noise, by how even it is (Kish 1965); but no less than 4 x 4.
+            constexpr double kLeastShare = 0.25;
+            const double alike = variance_[at] * variance_[at] / variance_squares_[at];
+            chance += variance_[at] * variance_[at] / std::max(alike, kLeastShare * count_[at]);
+        }
+    double squares = 0, groups = 0;
+    each([&](double s, double n) {
+        squares += (s - n * mean) * (s - n * mean);
+        groups += 1;
+    });
+    if (groups < 2) return {mean, std::sqrt(std::max(all * all, chance)) / pixels};
+    const double parted = squares * groups / (groups - 1);
+    return {mean, widening(groups) * std::sqrt(std::max(parted, chance)) / pixels};
+}
+
+}  // namespace petzval::apps

@@ -6,15 +6,19 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+# By file: namespaces of its own, and blocks of another wing's that hold more than declarations of types.
 astray=$(for wing in core camera integrator io apps; do
-    namespace=petzval
-    [ $wing = core ] || namespace+="::$wing"
-    grep -rEn --include='*.h' --include='*.cpp' '^namespace petzval' $wing |
-        grep -vE ":namespace $namespace(::[a-z_]+)? \{" |
-        while IFS=: read -r file line text; do
-            sed -n "$((line + 2))p" "$file" | grep -qE '^(class|struct) [A-Za-z]+;$' || echo "$file:$line: $text"
-        done || true
-done)
+    own="petzval::$wing(::[a-z0-9_]+)?"
+    [ $wing = core ] && own='petzval(::(embree|material_reading))?'
+    find $wing -name '*.h' -o -name '*.cpp' | sort | xargs awk -v own="^namespace $own [{]" '
+        function close_file() { if (file && !found) print file ": no namespace of its wing" }
+        FNR == 1 { close_file(); file = FILENAME; found = other = 0 }
+        other && /^[}]/ { other = 0 }
+        other && NF && !/^(class|struct|enum class) [A-Za-z]+( : [a-z0-9_]+)?;/ { print file ":" FNR ": " $0; other = 0 }
+        $0 ~ own { found = 1; next }
+        /^namespace petzval/ { other = 1 }
+        END { close_file() }'
+done | grep -vE '^(apps/main|apps/package/main|apps/python/main|apps/processor)[.]cpp: no namespace' || true)
 
 types=$(grep -rEo --include='*.h' '^(struct|class|enum class|union) [A-Za-z0-9_]+ (final )?[:{]' \
     core camera integrator io apps | sed -E 's/ (final )?[:{]$//; s/:(struct|class|enum class|union) / /')

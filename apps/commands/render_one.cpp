@@ -145,9 +145,11 @@ integrator::RenderResult OneRender::render(Progress& progress) {
         rendering = false;
         progress.begin(phase);
     };
+    const bool is_part = order_.render.samples.range && pictures().empty();
     const integrator::RenderResult result = render_->render(
-        monitor, {[&](const integrator::PathStats& stats) { keeper.at_pause(stats); },
-                  kept_.record().figures.render_wall_s, run.stats.has_value(), next_phase});
+        monitor,
+        {[&](const integrator::PathStats& stats) { keeper.at_pause(stats); },
+         kept_.record().figures.render_wall_s, run.stats.has_value(), next_phase, !is_part});
     keeper.finish();
     if (rendering) progress.end_rendering(!result.stopped);
     return result;

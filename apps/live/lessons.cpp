@@ -19,13 +19,13 @@ LessonJson triangle_lesson(const LessonSetting&) {
     constexpr uint32_t kSeed = 1;
     std::mt19937 random(kSeed);
     std::uniform_real_distribution<float> uniform(0, 1);
-    const std::vector<camera::V2d> corner = camera::regular_polygon(camera::kMinBlades).contours[0];
+    const std::vector<V2d> corner = camera::regular_polygon(camera::kMinBlades).contours[0];
     LessonPlots out;
     LessonJson wrong = LessonJson::array(), right = LessonJson::array();
     std::array<int, 2> near_corner{};
     const auto add = [&](LessonJson& points, V2f weights, int& near) {
         const double b = double(weights.x), c = double(weights.y);
-        const camera::V2d p = (1 - b - c) * corner[0] + b * corner[1] + c * corner[2];
+        const V2d p = (1 - b - c) * corner[0] + b * corner[1] + c * corner[2];
         points.push_back({rounded(p.x), rounded(p.y)});
         near += b + c < 0.5;
     };

@@ -2,6 +2,7 @@
 #include "apps/plan/noise_setup.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "apps/plan/rare_light.h"
@@ -15,25 +16,32 @@
 namespace petzval::apps {
 namespace {
 
-constexpr int kFloorPixels = 2048;
-constexpr uint32_t kFloorSamples = 8;
+constexpr std::array<integrator::PilotTurn, 4> kFloorTurns{
+    {{2048, 8}, {16384, 4}, {131072, 1}, {1 << 20, 1}}};
 
 double floor_of(const RenderSetup& setup, const integrator::RenderJob& job,
                 const integrator::PathOptions& path, V2i size, integrator::TbbExecutor& executor) {
     constexpr uint32_t kSeed = number_of(PrepassSeed::Noise);
-    const integrator::PilotBatch batch{
-        size, integrator::pilot_pixels(size, kFloorPixels, kSeed), 0, kFloorSamples, {kSeed}, {}};
     integrator::RenderJob pilot = job;
     pilot.observer = setup.view.observer;
     pilot.replicates = 1;
-    std::vector<double> found(batch.pixels.size());
-    render_pilot(tracer_of(setup, path), *setup.view.camera, pilot, batch, executor,
-                 [&](const integrator::PilotFilm& film) {
-                     const V4f c = film.colour;
-                     found[film.pixel] = double(luminance({c.x, c.y, c.z}));
-                 });
+    const integrator::PathTracer<> tracer = tracer_of(setup, path);
     io::SymmetricFloor floor;
-    for (const double l : found) floor.add(l);
+    for (const integrator::PilotTurn& turn : kFloorTurns) {
+        const integrator::PilotBatch batch{
+            size, integrator::pilot_pixels(size, turn.pixels, kSeed), 0, turn.samples, {kSeed}, {}};
+        std::vector<double> found(batch.pixels.size());
+        render_pilot(tracer, *setup.view.camera, pilot, batch, executor,
+                     [&](const integrator::PilotFilm& film) {
+                         const V4f c = film.colour;
+                         found[film.pixel] = double(luminance({c.x, c.y, c.z}));
+                     });
+        floor = {};
+        for (const double l : found) floor.add(l);
+        const auto lit = std::ranges::count_if(found, [](double l) { return l > 0; });
+        const bool is_all = int64_t{turn.pixels} >= int64_t{size.x} * size.y;
+        if (static_cast<size_t>(lit) >= integrator::kEnoughLitPixels || is_all) break;
+    }
     return floor.floor();
 }
 

@@ -211,7 +211,7 @@ integrator::RenderResult RenderSession::render(integrator::RenderMonitor& monito
     };
     if (job.denoised_error) return render_to_denoised(job, all, monitor);
     integrator::RenderResult result = all(job);
-    if (film_->keeps().halves && !result.stopped) {
+    if (run.denoises && film_->keeps().halves && !result.stopped) {
         if (run.begins) run.begins(Phase::Denoising);
         denoised_ = denoised_film(*film_, executor_, monitor.stop);
         result.stopped = !denoised_;

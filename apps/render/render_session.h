@@ -32,6 +32,9 @@ struct RenderRun {
     double spent_s = 0;   ///< of a time limit, by runs before
     bool timing = false;  ///< measure where the time goes
     PhaseSink begins{};   ///< gets the phases that begin
+    /// Denoises at the end, where the request says so; a part that is merged later needs no
+    /// picture.
+    bool denoises = true;
 };
 
 /// A scene that is loaded, and the request that it was loaded for. Copies are cheap.

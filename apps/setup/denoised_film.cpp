@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/spectrum/bands.h"
 #include "io/base/format.h"
@@ -88,18 +88,6 @@ double floor_of(const integrator::Denoised& picture) {
 
 }  // namespace
 
-Rect DenoisedFilm::blocks_of(const Rect& part_px) const {
-    const auto nearest = [](int from_px, int to_px, int all) {
-        const int first = std::min((from_px + kErrorBlock_px / 2) / kErrorBlock_px, all - 1);
-        const int last = (to_px + kErrorBlock_px / 2) / kErrorBlock_px;
-        return std::array{first, std::clamp(last, first + 1, all)};
-    };
-    const Rect& crop = picture.crop;
-    const auto [x0, x1] = nearest(part_px.x0 - crop.x0, part_px.x1 - crop.x0, blocks.across());
-    const auto [y0, y1] = nearest(part_px.y0 - crop.y0, part_px.y1 - crop.y0, blocks.down());
-    return {x0, y0, x1, y1};
-}
-
 std::string text_of(const DenoisedError& error) {
     return error.is_at_most() ? fmt::format("at most {}", io::percent(error.most()))
                               : fmt::format("{} ({} to {})", io::percent(error.value()),
@@ -140,7 +128,8 @@ std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film,
                 variance += (double(a.variance[c]) + double(b.variance[c])) / (2 * scale);
             }
             denoised.add(x - crop.x0, y - crop.y0, squares, variance);
-            noisy.add(x - crop.x0, y - crop.y0, noise, 0);
+            // (a - b)^2 / 4 of normal numbers with the variances of both halves varies by this.
+            noisy.add(x - crop.x0, y - crop.y0, noise, variance / std::numbers::sqrt2);
         }
     const Rect all{0, 0, denoised.across(), denoised.down()};
     out->error = denoised.over(all);

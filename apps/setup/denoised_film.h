@@ -22,10 +22,7 @@ struct DenoisedFilm {
     /// Error about each pixel: of the smallest square that tells it to about a third, from 32
     /// pixels on; or the least upper bound of squares about it, where that is less.
     std::vector<float> error_about;
-    ErrorBlocks blocks, noisy_blocks;  ///< of both, by which parts of the picture are told
-
-    /// Rectangle of the blocks that fill a part of the picture best, one at least.
-    [[nodiscard]] Rect blocks_of(const Rect& part_px) const;
+    ErrorBlocks blocks, noisy_blocks;  ///< of both pictures, by which parts of them are told
 };
 
 /// The error and its bounds, or that it is at most so large.

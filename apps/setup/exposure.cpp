@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "apps/setup/tracer.h"
 #include "core/sampling/prepass_seed.h"
@@ -24,13 +23,8 @@ constexpr double kMayClip = 0.1, kBrightest = 0.05;
 constexpr double kDarkest = 0.01;  ///< of the nearly brightest
 constexpr double kMostEv = 100;    ///< as far as --exposure goes
 
-/// A turn of the pilot: many pixels with few samples find small things.
-struct PilotTurn {
-    int pixels;
-    uint32_t samples;
-};
-constexpr std::array<PilotTurn, 4> kTurns{{{2048, 32}, {16384, 4}, {131072, 1}, {1 << 20, 1}}};
-constexpr size_t kEnoughPixels = 16;
+constexpr std::array<integrator::PilotTurn, 4> kTurns{
+    {{2048, 32}, {16384, 4}, {131072, 1}, {1 << 20, 1}}};
 
 /// Luminance below which a pixel is as good as black on a display: level 25 of 255 in sRGB.
 constexpr double kBlack = 0.01;
@@ -52,12 +46,15 @@ struct Seen {
     std::vector<double> scene, all;
     /// Those of pixels that show something of the scene, or of all where hardly any do.
     [[nodiscard]] const std::vector<double>& of_interest() const {
-        return scene.size() >= kEnoughPixels || all.size() < kEnoughPixels ? scene : all;
+        return scene.size() >= integrator::kEnoughLitPixels ||
+                       all.size() < integrator::kEnoughLitPixels
+                   ? scene
+                   : all;
     }
 };
 
 Seen look(const RenderSetup& setup, const integrator::RenderJob& job,
-          const integrator::PathTracer<>& tracer, const PilotTurn& turn,
+          const integrator::PathTracer<>& tracer, const integrator::PilotTurn& turn,
           integrator::TbbExecutor& executor) {
     const V2i size = setup.from.asked.size;
     const integrator::PilotBatch batch{
@@ -112,9 +109,9 @@ FoundExposure find_exposure(const RenderSetup& setup, const integrator::RenderJo
     pilot.observer = setup.view.observer;
     pilot.seed = hash32(job.seed, number_of(PrepassSeed::Exposure));
     Seen seen;
-    for (const PilotTurn& turn : kTurns) {
+    for (const integrator::PilotTurn& turn : kTurns) {
         seen = look(setup, pilot, tracer, turn, executor);
-        if (seen.of_interest().size() >= kEnoughPixels) break;
+        if (seen.of_interest().size() >= integrator::kEnoughLitPixels) break;
     }
     return exposure_for(seen.of_interest());
 }

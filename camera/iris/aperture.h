@@ -14,8 +14,6 @@
 
 namespace petzval::camera {
 
-using V2d = Imath::V2d;
-
 /// The round stop itself.
 struct Disk {};
 

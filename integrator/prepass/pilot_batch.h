@@ -16,6 +16,15 @@
 
 namespace petzval::integrator {
 
+/// A turn of a pilot, of which there are more until enough pixels have light: many pixels with few
+/// samples find small things.
+struct PilotTurn {
+    int pixels;
+    uint32_t samples;
+};
+/// Pixels with light that are enough to judge a picture by.
+inline constexpr size_t kEnoughLitPixels = 16;
+
 /// What a pilot renders.
 struct PilotBatch {
     V2i frame_px;

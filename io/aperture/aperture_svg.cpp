@@ -59,10 +59,9 @@ class SvgFile {
         camera::Polygon polygon{flatten(outline), is_even_odd(shape)};
         if (const auto fault = camera::find_fault(polygon))
             throw InputError(file_, place(shape).place, fault->message);
-        const camera::V2d centre = centre_of(polygon);
+        const V2d centre = centre_of(polygon);
         for (auto& contour : polygon.contours)
-            for (camera::V2d& p : contour)
-                p = {p.x - centre.x, centre.y - p.y};  // SVG's y points down
+            for (V2d& p : contour) p = {p.x - centre.x, centre.y - p.y};  // SVG's y points down
         return polygon;
     }
 
@@ -159,32 +158,28 @@ class SvgFile {
             return read_svg_points(node.attribute("points").value(), place(node, "points"));
         if (name == "rect") return rectangle(node);
         const bool circle = name == "circle";
-        const camera::V2d radii(positive(node, circle ? "r" : "rx"),
-                                positive(node, circle ? "r" : "ry"));
-        const camera::V2d centre(length(node, "cx", 0), length(node, "cy", 0));
-        svg::Subpath round{centre + camera::V2d(radii.x, 0), {}};
+        const V2d radii(positive(node, circle ? "r" : "rx"), positive(node, circle ? "r" : "ry"));
+        const V2d centre(length(node, "cx", 0), length(node, "cy", 0));
+        svg::Subpath round{centre + V2d(radii.x, 0), {}};
         add_ellipse_arc(round, centre, radii, 0, 0, 2 * std::numbers::pi);
         round.curves.back().end = round.start;
         return {round};
     }
 
     [[nodiscard]] svg::Outline rectangle(const pugi::xml_node& node) const {
-        const camera::V2d low(length(node, "x", 0), length(node, "y", 0));
-        const camera::V2d size(positive(node, "width"), positive(node, "height"));
+        const V2d low(length(node, "x", 0), length(node, "y", 0));
+        const V2d size(positive(node, "width"), positive(node, "height"));
         double rx = length(node, "rx", -1), ry = length(node, "ry", -1);
         if (rx < 0) rx = std::max(ry, 0.0);  // one of them alone stands for both
         if (ry < 0) ry = rx;
         rx = std::min(rx, size.x / 2), ry = std::min(ry, size.y / 2);
-        const camera::V2d inner_low = low + camera::V2d(rx, ry),
-                          inner_high = low + size - camera::V2d(rx, ry);
-        const std::array<camera::V2d, 4> centres = {
-            camera::V2d(inner_high.x, inner_low.y), inner_high,
-            camera::V2d(inner_low.x, inner_high.y), inner_low};
+        const V2d inner_low = low + V2d(rx, ry), inner_high = low + size - V2d(rx, ry);
+        const std::array<V2d, 4> centres = {V2d(inner_high.x, inner_low.y), inner_high,
+                                            V2d(inner_low.x, inner_high.y), inner_low};
         svg::Subpath out{{inner_low.x, low.y}, {}};
         for (int i = 0; i < 4; ++i) {
             const double from = (i - 1) * std::numbers::pi / 2;
-            const camera::V2d start =
-                centres[i] + camera::V2d(rx * std::cos(from), ry * std::sin(from));
+            const V2d start = centres[i] + V2d(rx * std::cos(from), ry * std::sin(from));
             out.curves.push_back({start, start, start, true});
             if (rx > 0 && ry > 0)
                 add_ellipse_arc(out, centres[i], {rx, ry}, 0, from, std::numbers::pi / 2);
@@ -200,15 +195,15 @@ class SvgFile {
         return all;
     }
 
-    [[nodiscard]] camera::V2d centre_of(const camera::Polygon& polygon) const {
+    [[nodiscard]] V2d centre_of(const camera::Polygon& polygon) const {
         const pugi::xml_node root = document_.document_element();
         if (const auto box = root.attribute("viewBox")) {
             const auto v = read_svg_numbers(box.value(), 4, place(root, "viewBox"));
             return {v[0] + v[2] / 2, v[1] + v[3] / 2};
         }
-        Imath::Box<camera::V2d> box;
+        Imath::Box<V2d> box;
         for (const auto& contour : polygon.contours)
-            for (const camera::V2d& p : contour) box.extendBy(p);
+            for (const V2d& p : contour) box.extendBy(p);
         return box.center();
     }
 

@@ -72,28 +72,27 @@ class Reader {
     size_t at_ = 0;
 };
 
-double angle_between(const camera::V2d& a, const camera::V2d& b) {
+double angle_between(const V2d& a, const V2d& b) {
     return std::atan2(a.cross(b), a.dot(b));
 }
 
 // Adds an arc; endpoints to centre: SVG 2, appendix B.2.4 and B.2.5.
-void add_svg_arc(svg::Subpath& to, camera::V2d from, camera::V2d radii, double turn_rad, bool large,
-                 bool sweep, camera::V2d end) {
+void add_svg_arc(svg::Subpath& to, V2d from, V2d radii, double turn_rad, bool large, bool sweep,
+                 V2d end) {
     if (from == end) return;
     radii = {std::fabs(radii.x), std::fabs(radii.y)};
     if (!(radii.x > 0 && radii.y > 0)) return to.curves.push_back({from, end, end, true});
     const double c = std::cos(turn_rad), s = std::sin(turn_rad);
-    const camera::V2d half = (from - end) / 2;
-    const camera::V2d p(c * half.x + s * half.y, -s * half.x + c * half.y);
+    const V2d half = (from - end) / 2;
+    const V2d p(c * half.x + s * half.y, -s * half.x + c * half.y);
     const double lambda = std::pow(p.x / radii.x, 2) + std::pow(p.y / radii.y, 2);
     if (lambda > 1) radii *= std::sqrt(lambda);
     const double root = std::sqrt(std::max(1 / lambda - 1, 0.0)) * (large == sweep ? -1 : 1);
-    const camera::V2d centre_turned(root * radii.x * p.y / radii.y,
-                                    -root * radii.y * p.x / radii.x);
-    const camera::V2d centre = camera::V2d(c * centre_turned.x - s * centre_turned.y,
-                                           s * centre_turned.x + c * centre_turned.y) +
-                               (from + end) / 2;
-    const camera::V2d first = (p - centre_turned) / radii, last = (-p - centre_turned) / radii;
+    const V2d centre_turned(root * radii.x * p.y / radii.y, -root * radii.y * p.x / radii.x);
+    const V2d centre =
+        V2d(c * centre_turned.x - s * centre_turned.y, s * centre_turned.x + c * centre_turned.y) +
+        (from + end) / 2;
+    const V2d first = (p - centre_turned) / radii, last = (-p - centre_turned) / radii;
     double by = angle_between(first, last);
     if (sweep && by < 0) by += 2 * std::numbers::pi;
     if (!sweep && by > 0) by -= 2 * std::numbers::pi;
@@ -120,41 +119,41 @@ class PathReader {
     }
 
   private:
-    camera::V2d point() {
+    V2d point() {
         const double x = in_.number();
-        return base_ + camera::V2d(x, in_.number());
+        return base_ + V2d(x, in_.number());
     }
     svg::Subpath& subpath() {
         if (out_.empty()) in_.refuse("a path must begin with M");
         if (closed_) out_.push_back({at_, {}}), closed_ = false;
         return out_.back();
     }
-    void line_to(const camera::V2d& end) {
+    void line_to(const V2d& end) {
         subpath().curves.push_back({at_, end, end, true});
         move(end, end);
     }
-    void cubic_to(const camera::V2d& a, const camera::V2d& b, const camera::V2d& end) {
+    void cubic_to(const V2d& a, const V2d& b, const V2d& end) {
         subpath().curves.push_back({a, b, end});
         move(end, b);
     }
-    void quadratic_to(const camera::V2d& control, const camera::V2d& end) {
+    void quadratic_to(const V2d& control, const V2d& end) {
         subpath().curves.push_back(
             {at_ + (control - at_) * (2.0 / 3), end + (control - end) * (2.0 / 3), end});
         move(end, control);
     }
-    void move(const camera::V2d& to, const camera::V2d& control) { at_ = to, control_ = control; }
+    void move(const V2d& to, const V2d& control) { at_ = to, control_ = control; }
     // The control point of a smooth curve, where the command before was one of its kind.
-    [[nodiscard]] camera::V2d mirrored(std::string_view kind) const {
+    [[nodiscard]] V2d mirrored(std::string_view kind) const {
         return kind.find(previous_) != kind.npos ? at_ * 2.0 - control_ : at_;
     }
 
     void step() {
         const bool relative = command_ >= 'a';
-        base_ = relative ? at_ : camera::V2d(0);
+        base_ = relative ? at_ : V2d(0);
         const char kind = relative ? static_cast<char>(command_ - 'a' + 'A') : command_;
         switch (kind) {
             case 'M': {
-                const camera::V2d start = point();
+                const V2d start = point();
                 out_.push_back({start, {}});
                 closed_ = false;
                 move(start, start);
@@ -170,17 +169,17 @@ class PathReader {
                 line_to({at_.x, base_.y + in_.number()});
                 break;
             case 'C': {
-                const camera::V2d a = point(), b = point();
+                const V2d a = point(), b = point();
                 cubic_to(a, b, point());
                 break;
             }
             case 'S': {
-                const camera::V2d b = point();
+                const V2d b = point();
                 cubic_to(mirrored("CS"), b, point());
                 break;
             }
             case 'Q': {
-                const camera::V2d control = point();
+                const V2d control = point();
                 quadratic_to(control, point());
                 break;
             }
@@ -191,13 +190,13 @@ class PathReader {
                 const double rx = in_.number(), ry = in_.number();
                 const double turn = in_.number() * std::numbers::pi / 180;
                 const bool large = in_.flag(), sweep = in_.flag();
-                const camera::V2d end = point();
+                const V2d end = point();
                 add_svg_arc(subpath(), at_, {rx, ry}, turn, large, sweep, end);
                 move(end, end);
                 break;
             }
             case 'Z': {
-                const camera::V2d start = subpath().start;
+                const V2d start = subpath().start;
                 move(start, start);
                 closed_ = true;
                 break;
@@ -213,7 +212,7 @@ class PathReader {
 
     Reader in_;
     svg::Outline out_;
-    camera::V2d at_{0, 0}, base_{0, 0}, control_{0, 0};
+    V2d at_{0, 0}, base_{0, 0}, control_{0, 0};
     char command_ = 0, previous_ = ' ';
     bool closed_ = false;
 };
@@ -229,7 +228,7 @@ svg::Outline read_svg_points(std::string_view points, const TextPlace& place) {
     svg::Outline out;
     while (!in.done()) {
         const double x = in.number();
-        const camera::V2d p(x, in.number());
+        const V2d p(x, in.number());
         if (out.empty())
             out.push_back({p, {}});
         else
@@ -290,27 +289,27 @@ Imath::M33d read_svg_transform(std::string_view text, const TextPlace& place) {
     return all;
 }
 
-void add_ellipse_arc(svg::Subpath& to, camera::V2d centre, camera::V2d radii, double turn_rad,
-                     double from_rad, double by_rad) {
+void add_ellipse_arc(svg::Subpath& to, V2d centre, V2d radii, double turn_rad, double from_rad,
+                     double by_rad) {
     const double c = std::cos(turn_rad), s = std::sin(turn_rad);
-    const auto placed = [&](const camera::V2d& unit) {
-        const camera::V2d p = unit * radii;
-        return centre + camera::V2d(c * p.x - s * p.y, s * p.x + c * p.y);
+    const auto placed = [&](const V2d& unit) {
+        const V2d p = unit * radii;
+        return centre + V2d(c * p.x - s * p.y, s * p.x + c * p.y);
     };
     const int pieces =
         std::max(1, static_cast<int>(std::ceil(std::fabs(by_rad) / (std::numbers::pi / 4))));
     const double step = by_rad / pieces, handle = 4.0 / 3 * std::tan(step / 4);
     for (int i = 0; i < pieces; ++i) {
         const double a = from_rad + i * step, b = a + step;
-        const camera::V2d first(std::cos(a), std::sin(a)), last(std::cos(b), std::sin(b));
-        to.curves.push_back({placed(first + camera::V2d(-first.y, first.x) * handle),
-                             placed(last - camera::V2d(-last.y, last.x) * handle), placed(last)});
+        const V2d first(std::cos(a), std::sin(a)), last(std::cos(b), std::sin(b));
+        to.curves.push_back({placed(first + V2d(-first.y, first.x) * handle),
+                             placed(last - V2d(-last.y, last.x) * handle), placed(last)});
     }
 }
 
-std::vector<std::vector<camera::V2d>> flatten(const svg::Outline& outline) {
-    camera::V2d low(HUGE_VAL), high(-HUGE_VAL);
-    const auto extend = [&](const camera::V2d& p) {
+std::vector<std::vector<V2d>> flatten(const svg::Outline& outline) {
+    V2d low(HUGE_VAL), high(-HUGE_VAL);
+    const auto extend = [&](const V2d& p) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     };
@@ -320,15 +319,15 @@ std::vector<std::vector<camera::V2d>> flatten(const svg::Outline& outline) {
             extend(curve.a), extend(curve.b), extend(curve.end);
     }
     const double extent = std::max(high.x - low.x, high.y - low.y) / 2;
-    std::vector<std::vector<camera::V2d>> contours;
+    std::vector<std::vector<V2d>> contours;
     size_t vertices = 0;
     for (const svg::Subpath& subpath : outline) {
         if (vertices > camera::kMaxPolygonVertices) break;
-        std::vector<camera::V2d> contour{subpath.start};
-        const auto add = [&](const camera::V2d& p) {
+        std::vector<V2d> contour{subpath.start};
+        const auto add = [&](const V2d& p) {
             if ((p - contour.back()).length() > 1e-9 * extent) contour.push_back(p);
         };
-        camera::V2d p = subpath.start;
+        V2d p = subpath.start;
         for (const svg::Cubic& q : subpath.curves) {
             if (contour.size() > camera::kMaxPolygonVertices) break;
             // Wang 1984: sqrt(d (d - 1) / 8 * largest second difference / tolerance), d = 3.

@@ -17,12 +17,12 @@ namespace petzval::io {
 namespace svg {
 
 struct Cubic {
-    camera::V2d a, b,
+    V2d a, b,
         end;  ///< the control points after the start, which is where the last one ended
     bool straight = false;
 };
 struct Subpath {
-    camera::V2d start;
+    V2d start;
     std::vector<Cubic> curves;
 };
 using Outline = std::vector<Subpath>;
@@ -48,11 +48,11 @@ struct TextPlace {
 
 /// Adds part of an ellipse whose axes are turned by turn_rad, in pieces of at most 45 degrees, each
 /// within 5e-6 of the radius (Goldapp 1991, "Approximation of circular arcs by cubic polynomials").
-void add_ellipse_arc(svg::Subpath&, camera::V2d centre, camera::V2d radii, double turn_rad,
-                     double from_rad, double by_rad);
+void add_ellipse_arc(svg::Subpath&, V2d centre, V2d radii, double turn_rad, double from_rad,
+                     double by_rad);
 
 /// Polygon contours within 1e-4 of half the outline's larger extent. Points that fall on the one
 /// before them are left out. Stops soon after kMaxPolygonVertices; find_fault() reports that.
-[[nodiscard]] std::vector<std::vector<camera::V2d>> flatten(const svg::Outline&);
+[[nodiscard]] std::vector<std::vector<V2d>> flatten(const svg::Outline&);
 
 }  // namespace petzval::io

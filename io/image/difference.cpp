@@ -9,6 +9,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "core/spectrum/bands.h"
@@ -101,13 +102,6 @@ std::string why_not_the_same_wavelengths(const Picture& a, const Picture& b) {
     return "";
 }
 
-/// Words of one sorted list that are not in the other.
-std::string only_in(const std::vector<std::string>& a, const std::vector<std::string>& b) {
-    std::vector<std::string> rest;
-    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));
-    return rest.empty() ? "none" : fmt::format("{}", fmt::join(rest, " "));
-}
-
 }  // namespace
 
 std::optional<double> floor_against(const Picture& reference) {
@@ -142,18 +136,32 @@ std::string why_not_comparable(const Picture& a, const Picture& b) {
 std::string channels_of_one(const Picture& a, const Picture& b) {
     const auto in_a = sorted(a.channels), in_b = sorted(b.channels);
     if (in_a == in_b) return "";
-    return fmt::format("channels only in the former: {}; only in the latter: {}",
-                       only_in(in_a, in_b), only_in(in_b, in_a));
+    std::vector<std::string> texts;
+    const auto add = [&](const char* which, const auto& one, const auto& other) {
+        std::vector<std::string> rest;
+        std::ranges::set_difference(one, other, std::back_inserter(rest));
+        if (!rest.empty())
+            texts.push_back(fmt::format("only in the {}: {}", which, fmt::join(rest, " ")));
+    };
+    add("former", in_a, in_b);
+    add("latter", in_b, in_a);
+    return fmt::format("channels {}", fmt::join(texts, "; "));
 }
 
 std::vector<LayerDifference> compare(const Picture& a, const Picture& b) {
     const std::optional<double> floor = floor_against(b);
     std::vector<Sums> layers;
+    // A channel of a layer that the other picture has in part is told by its own name.
+    std::set<std::string> parted;
+    for (const auto* const of : {&a, &b})
+        for (const std::string& channel : of->channels)
+            if (channel_index(of == &a ? b : a, channel) < 0) parted.insert(layer_of(channel));
     for (size_t c = 0; c < b.channels.size(); ++c) {
         const int its_index = channel_index(a, b.channels[c]);
         if (its_index < 0) continue;
         const auto in_a = static_cast<size_t>(its_index);
-        Sums& sums = sums_of(layers, layer_of(b.channels[c]), floor);
+        const std::string layer = layer_of(b.channels[c]);
+        Sums& sums = sums_of(layers, parted.contains(layer) ? b.channels[c] : layer, floor);
         for (int y = 0; y < b.height; ++y)
             for (int x = 0; x < b.width; ++x) {
                 const size_t pixel = size_t(y) * b.width + x;

@@ -19,7 +19,8 @@ namespace petzval::io {
 inline constexpr double kRelativeMseEpsilon = 0.01;
 
 /// Differences in one layer: "RGB", "A", or the name before the last point in the names of its
-/// channels; the error of a layer is a layer of its own. Values that are not finite in either
+/// channels; the error of a layer is a layer of its own. So is each channel of a layer of which a
+/// picture has only a part. Values that are not finite in either
 /// picture are counted and left out of everything else.
 struct LayerDifference {
     std::string layer;

@@ -26,8 +26,7 @@ camera::Mask vignette(int size) {
 camera::Polygon gear() {
     camera::Polygon out{{{}}};
     const auto at = [](double r, double turn) {
-        return camera::V2d(std::cos(2 * std::numbers::pi * turn),
-                           std::sin(2 * std::numbers::pi * turn)) *
+        return V2d(std::cos(2 * std::numbers::pi * turn), std::sin(2 * std::numbers::pi * turn)) *
                r;
     };
     for (int i = 0; i < 5000; ++i)

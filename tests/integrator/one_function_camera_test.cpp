@@ -59,13 +59,13 @@ std::vector<float> camera_picture(const camera::Camera& camera) {
 /// Of the lamp's picture, the share of the film's area, and where its middle is.
 struct Seen {
     double share = 0;
-    camera::V2d middle{0.};
+    V2d middle{0.};
 };
 Seen seen_through(const std::vector<float>& pixels) {
     Seen out;
     for (size_t i = 0; i < pixels.size(); ++i) {
-        const camera::V2d film((double(i % kSize_px) + 0.5) / kSize_px,
-                               (double(i / kSize_px) + 0.5) / kSize_px);
+        const V2d film((double(i % kSize_px) + 0.5) / kSize_px,
+                       (double(i / kSize_px) + 0.5) / kSize_px);
         out.share += double(pixels[i]);
         out.middle += film * double(pixels[i]);
     }

@@ -105,8 +105,7 @@ inline void GhostLight::walk(uint32_t count, PairLights& out) const {
     const V3d d = -V3d(sun_.centre);
     for (uint32_t i = 0; i < count; ++i) {
         const Sampler sampler(SamplerKind::Owen, 3, {0, 0, i});
-        const camera::V2d at =
-            (camera::V2d(sampler.get2(Dim::Lens)) * 2.0 - camera::V2d(1)) * reach;
+        const V2d at = (V2d(sampler.get2(Dim::Lens)) * 2.0 - V2d(1)) * reach;
         const auto face = at.length() <= reach ? camera::face_point(lens, 0, at) : std::nullopt;
         if (!face || !(d.dot(face->normal) > 0)) continue;
         camera::LightRay ray;

@@ -80,7 +80,7 @@ TEST(Stability, RaysOfAThinLensMeetAtTenfoldMagnification) {
 TEST(Stability, ASliverOfAThousandthLosesNothing) {
     const double c = std::sqrt(0.5), x = 0.5, y = 0.0005;
     camera::Polygon sliver{{{{-x, -y}, {x, -y}, {x, y}, {-x, y}}}};
-    for (camera::V2d& p : sliver.contours[0]) p = {c * (p.x - p.y), c * (p.x + p.y)};
+    for (V2d& p : sliver.contours[0]) p = {c * (p.x - p.y), c * (p.x + p.y)};
     for (const camera::IrisSampling way : camera::iris_samplings(sliver)) {
         const camera::Iris iris(sliver, 10, camera::ApertureScale::Inscribed, way);
         int refused = 0;
@@ -94,8 +94,8 @@ TEST(Stability, NearlyDegeneratePolygonsKeepTheirArea) {
     for (const double d : {1e-3, 1e-6, 1e-9}) {
         // A vertex off a straight edge, and a slot of width d that is 1.5 deep; turned, so that no
         // edge is level.
-        const auto turned = [](std::vector<camera::V2d> contour) {
-            for (camera::V2d& p : contour) p = {0.8 * p.x - 0.6 * p.y, 0.6 * p.x + 0.8 * p.y};
+        const auto turned = [](std::vector<V2d> contour) {
+            for (V2d& p : contour) p = {0.8 * p.x - 0.6 * p.y, 0.6 * p.x + 0.8 * p.y};
             return camera::Polygon{{std::move(contour)}};
         };
         const camera::Polygon dented = turned({{-1, -1}, {0, -1 - d}, {1, -1}, {1, 1}, {-1, 1}});
@@ -110,7 +110,7 @@ TEST(Stability, NearlyDegeneratePolygonsKeepTheirArea) {
         for (const auto& [polygon, area] : {std::pair{dented, 4 + d}, {slotted, 4 - 1.5 * d}}) {
             ASSERT_FALSE(camera::find_fault(polygon)) << d;
             double reach2 = 0;
-            for (const camera::V2d& p : polygon.contours[0]) reach2 = std::max(reach2, p.length2());
+            for (const V2d& p : polygon.contours[0]) reach2 = std::max(reach2, p.length2());
             const camera::Iris iris(polygon, 10, camera::ApertureScale::Inscribed,
                                     camera::IrisSampling::Triangles);
             EXPECT_NEAR(iris.area_mm2() / (area * 100 / reach2), 1, 1e-9) << d;

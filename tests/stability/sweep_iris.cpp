@@ -18,7 +18,7 @@ constexpr double kStop_mm = 10;
 camera::Polygon turned(camera::Polygon polygon, double rad) {
     const double c = std::cos(rad), s = std::sin(rad);
     for (auto& contour : polygon.contours)
-        for (camera::V2d& p : contour) p = {p.x * c - p.y * s, p.x * s + p.y * c};
+        for (V2d& p : contour) p = {p.x * c - p.y * s, p.x * s + p.y * c};
     return polygon;
 }
 
@@ -103,7 +103,7 @@ Finding rejection_of_slivers() {
 
 namespace {
 
-double cross(const camera::V2d& a, const camera::V2d& b) {
+double cross(const V2d& a, const V2d& b) {
     return a.x * b.y - a.y * b.x;
 }
 
@@ -111,7 +111,7 @@ double exact_area(const camera::Polygon& polygon) {
     long double twice = 0;
     for (const auto& c : polygon.contours)
         for (size_t i = 0; i < c.size(); ++i) {
-            const camera::V2d &a = c[i], &b = c[(i + 1) % c.size()], &o = c[0];
+            const V2d &a = c[i], &b = c[(i + 1) % c.size()], &o = c[0];
             twice += (static_cast<long double>(a.x) - o.x) * (static_cast<long double>(b.y) - o.y) -
                      (static_cast<long double>(a.y) - o.y) * (static_cast<long double>(b.x) - o.x);
         }
@@ -119,11 +119,11 @@ double exact_area(const camera::Polygon& polygon) {
 }
 
 // How far a point lies outside a contour: 0 within, by the parity of crossings.
-double distance_outside(const std::vector<camera::V2d>& contour, const camera::V2d& p) {
+double distance_outside(const std::vector<V2d>& contour, const V2d& p) {
     bool inside = false;
     double least = HUGE_VAL;
     for (size_t i = 0; i < contour.size(); ++i) {
-        const camera::V2d &a = contour[i], &b = contour[(i + 1) % contour.size()], along = b - a;
+        const V2d &a = contour[i], &b = contour[(i + 1) % contour.size()], along = b - a;
         if ((a.y > p.y) != (b.y > p.y) && (cross(along, p - a) > 0) == (b.y > a.y))
             inside = !inside;
         const double t = std::clamp((p - a).dot(along) / along.dot(along), 0.0, 1.0);
@@ -179,7 +179,7 @@ Quality quality_of(const camera::Polygon& polygon) {
     if (refusal_of([&] { static_cast<void>(iris_of(polygon)); }) != "accepted")
         return {.refused = true};
     double reach = 0;
-    for (const camera::V2d& p : polygon.contours[0]) reach = std::fmax(reach, p.length());
+    for (const V2d& p : polygon.contours[0]) reach = std::fmax(reach, p.length());
     const double mm = kStop_mm / reach;
     const camera::Iris iris = iris_of(polygon);
     out.area_error = std::fabs(iris.area_mm2() / (exact_area(polygon) * mm * mm) - 1);
@@ -187,7 +187,7 @@ Quality quality_of(const camera::Polygon& polygon) {
     constexpr uint32_t kPoints = 4096;
     for (uint32_t i = 0; i < kPoints; ++i) {
         const V2f p = iris.sample(Sampler(SamplerKind::Owen, 5, {0, 0, i}).get2(Dim::Lens));
-        const double off = distance_outside(polygon.contours[0], camera::V2d(p.x, p.y) * (1 / mm));
+        const double off = distance_outside(polygon.contours[0], V2d(p.x, p.y) * (1 / mm));
         out.stray += double(!(off <= 1e-6)) / kPoints;
     }
     return out;

@@ -59,7 +59,8 @@ void diff_command(const DiffOptions& o) {
     if (!channels_of_one.empty()) print_line("not compared: " + channels_of_one);
     std::fflush(stdout);  // the result comes before a complaint
     if (!o.fail_above) return;
-    if (!channels_of_one.empty()) throw io::InputError(o.a, "", channels_of_one);
+    if (!channels_of_one.empty())
+        throw io::InputError(o.a, "", "against {}: {}", o.b, channels_of_one);
     for (const io::LayerDifference& layer : layers) require_within(*o.fail_above, o, layer);
 }
 
@@ -75,7 +76,8 @@ void add_diff(CLI::App& image) {
     diff->footer(fmt::format(
         "symmetric MSE is the mean of (a - b)^2 / ((a^2 + b^2) / 2 + f^2), where f is {} times the "
         "reference's mid-grey: 0 for equal pictures, {:g} at most, and the same for light that is "
-        "lost and light that is added. It is for light: the layers RGB and Y of an .exr. relative "
+        "lost and light that is added. It is for light: the layers RGB, Y and denoised of an .exr. "
+        "relative "
         "MSE is the mean of (a - b)^2 / (b^2 + {}); the peak of PSNR is the largest value of b.",
         io::kSymmetricFloorShare, io::kMostSymmetricMse, io::kRelativeMseEpsilon));
     diff->callback([options] { diff_command(*options); });

@@ -40,9 +40,10 @@ TEST_F(CliDenoise, TheDenoisedPictureStandsBesideTheOther) {
     EXPECT_GT(json["noisy_picture"]["error"], 0);
 }
 
-// The whole as the render said it, then each region; a cropped frame has regions of its crop.
+// The whole as the render said it, then each region: 42 x 34 pixels have 6 x 5 blocks, the last
+// ones of 2 pixels.
 TEST_F(CliDenoise, AStateTellsItsErrorByRegion) {
-    const Finished run = denoised({"--spp", "16", "--crop", "8,8,40,32"}, "a.state");
+    const Finished run = denoised({"--spp", "16", "--crop", "8,8,42,34"}, "a.state");
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const Finished said = run_petzval({"image", "noise", path("a.state"), "--regions", "2"});
     EXPECT_EQ(said.exit_code, 0) << said.err;
@@ -50,15 +51,24 @@ TEST_F(CliDenoise, AStateTellsItsErrorByRegion) {
     const std::string error = "denoised: error ";
     const size_t at = run.err.find(error) + error.size();
     EXPECT_THAT(said.out, HasSubstr(run.err.substr(at, run.err.find(", and", at) - at)));
-    EXPECT_THAT(said.out, HasSubstr("\n28,24,20,16 "));
+    for (const char* region : {"\n8,8,24,16 ", "\n32,8,18,16 ", "\n8,24,24,18 ", "\n32,24,18,18 "})
+        EXPECT_THAT(said.out, HasSubstr(region));
+    const Finished all = run_petzval({"image", "noise", path("a.state"), "--regions", "1000"});
+    EXPECT_EQ(std::ranges::count(all.out, '\n'), 31);
+}
 
-    ASSERT_EQ(run_petzval({"render", scene_, "--size", "16x16", "--spp", "1", "--quiet", "-o",
-                           path("plain.state")})
-                  .exit_code,
-              0);
-    const Finished plain = run_petzval({"image", "noise", path("plain.state")});
-    EXPECT_EQ(plain.exit_code, 1);
-    EXPECT_THAT(plain.err, HasSubstr("render it with --denoise"));
+TEST_F(CliDenoise, StatesWithoutTwoHalvesTellNoError) {
+    const auto complaint = [&](Words more) {
+        Words words{"render", scene_, "--size", "16x16", "--quiet", "-o", path("plain.state")};
+        words.insert(words.end(), more.begin(), more.end());
+        EXPECT_EQ(run_petzval(words).exit_code, 0);
+        const Finished plain = run_petzval({"image", "noise", path("plain.state")});
+        EXPECT_EQ(plain.exit_code, 1);
+        return plain.err;
+    };
+    EXPECT_THAT(complaint({"--spp", "1"}), HasSubstr("render it with --denoise"));
+    EXPECT_THAT(complaint({"--noise", "90%"}), HasSubstr("petzval merge"));
+    EXPECT_THAT(complaint({"--spp", "0:1", "--denoise"}), HasSubstr("has no samples"));
 }
 
 TEST_F(CliDenoise, ADisplayShowsTheDenoisedPicture) {
@@ -93,7 +103,9 @@ TEST_F(CliDenoise, StatesMergeToTheBytesOfOneRun) {
         EXPECT_EQ(run.exit_code, 0) << run.err;
         return file_bytes(path("merged.exr"));
     };
-    ASSERT_EQ(denoised({"--spp", "0:3"}, "1.state").exit_code, 0);
+    const Finished part = denoised({"--spp", "0:3"}, "1.state");
+    ASSERT_EQ(part.exit_code, 0);
+    EXPECT_THAT(part.err, testing::Not(HasSubstr("denoised: error")));
     ASSERT_EQ(denoised({"--spp", "3:8"}, "2.state").exit_code, 0);
     EXPECT_EQ(merged({"1.state", "2.state"}), file_bytes(path("a.exr")));
     ASSERT_EQ(denoised({"--spp", "0:8", "--crop", "0,0,64,20"}, "3.state").exit_code, 0);

@@ -46,6 +46,17 @@ TEST_F(CliNoise, IsReachedAndSaid) {
     EXPECT_EQ(std::ranges::count(said.out, '\n'), 5);
 }
 
+// Hardly any of the pilot's pixels shows a lamp that is two kilometres away.
+TEST_F(CliNoise, AFewLitPixelsTellTheFloor) {
+    const Finished run = run_petzval(
+        {"render", std::string(PETZVAL_ASSETS) + "/scenes/flying_lamp.glb", "--pose",
+         "1,0,0,0,0,1,0,0,0,0,1,2000", "--size", "480x320", "--noise", "20%", "--spp", "16",
+         "--progress", "none", "-o", path("far.exr"), "--stats", path("stats.json")});
+    EXPECT_EQ(run.exit_code, 5) << run.err;
+    std::ifstream file(path("stats.json"));
+    EXPECT_GT(nlohmann::json::parse(file)["noise"]["floor_nits"], 0);
+}
+
 TEST_F(CliNoise, ABoundHasAnExitCodeOfItsOwn) {
     const Finished bounded = noisy({"--noise", "0.01%", "--spp", "16"});
     EXPECT_EQ(bounded.exit_code, 5) << bounded.err;

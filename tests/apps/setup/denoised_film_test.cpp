@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 
 #include "tests/support/statistics.h"
@@ -73,26 +72,14 @@ TEST(DenoisedFilm, BoundsOfRegionsHoldTheTruth) {
             for (int x = 0; x < kFrame.x; x += 2 * width_px, ++regions) {
                 const double truth = std::sqrt(true_squared(*film, x, x + width_px));
                 const DenoisedError error =
-                    film->blocks.over(film->blocks_of({x, 0, x + width_px, kFrame.y}));
+                    film->blocks.over({x / kErrorBlock_px, 0, (x + width_px) / kErrorBlock_px,
+                                       kFrame.y / kErrorBlock_px});
                 outside += truth < error.least() || truth > error.most();
             }
         }
         const double p = test::incomplete_beta(outside, regions - outside + 1, 0.05);
         EXPECT_TRUE(outside == 0 || p > test::sidak()) << width_px << ": " << outside;
     }
-}
-
-// 12 x 12 blocks of 8 pixels.
-TEST(DenoisedFilm, RegionsAreRoundedToBlocks) {
-    const auto film = denoised_even_light(1, 1, 1);
-    const auto blocks = [&](const Rect& part) {
-        const Rect r = film->blocks_of(part);
-        return std::array{r.x0, r.y0, r.x1, r.y1};
-    };
-    EXPECT_EQ(blocks({0, 0, kFrame.x, kFrame.y}), (std::array{0, 0, 12, 12}));
-    EXPECT_EQ(blocks({3, 5, 20, 27}), (std::array{0, 1, 3, 3}));
-    EXPECT_EQ(blocks({95, 95, 96, 96}), (std::array{11, 11, 12, 12}));
-    EXPECT_EQ(blocks({40, 40, 41, 41}), (std::array{5, 5, 6, 6}));
 }
 
 // A noisy half beside a quiet one: each is told its own error, not that of the whole.

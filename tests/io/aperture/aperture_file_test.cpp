@@ -35,7 +35,7 @@ double area(const camera::Polygon& polygon) {
     for (const auto& contour : polygon.contours) sum -= test::signed_area(contour);
     return sum;
 }
-void expect_contour(const camera::Polygon& polygon, const std::vector<camera::V2d>& vertices) {
+void expect_contour(const camera::Polygon& polygon, const std::vector<V2d>& vertices) {
     ASSERT_EQ(polygon.contours.size(), 1u);
     ASSERT_EQ(polygon.contours[0].size(), vertices.size());
     for (size_t i = 0; i < vertices.size(); ++i)
@@ -44,7 +44,7 @@ void expect_contour(const camera::Polygon& polygon, const std::vector<camera::V2
 
 TEST(SvgAperture, LinesOfEveryKind) {
     // In the file from (4, 4), y down; here about the middle of the viewBox, y up.
-    const std::vector<camera::V2d> box = {{-6, 6}, {2, 6}, {2, -1}, {-6, -1}};
+    const std::vector<V2d> box = {{-6, 6}, {2, 6}, {2, -1}, {-6, -1}};
     expect_contour(path("M4,4 L12 4 L12 11 L4 11 Z"), box);
     expect_contour(path("m4 4 8 0 0 7-8 0z"), box);
     expect_contour(path("M4 4H12V11H4Z"), box);
@@ -66,8 +66,8 @@ TEST(SvgAperture, Subpaths) {
     // After Z a path goes on from where it began.
     const svg::Outline outline = read_svg_path("M5 6 h2 v2 z l-2 0 l0 -2 z", {"file", "d"});
     ASSERT_EQ(outline.size(), 2u);
-    EXPECT_EQ(outline[1].start, camera::V2d(5, 6));
-    EXPECT_EQ(outline[1].curves[1].end, camera::V2d(3, 4));
+    EXPECT_EQ(outline[1].start, V2d(5, 6));
+    EXPECT_EQ(outline[1].curves[1].end, V2d(3, 4));
     EXPECT_TRUE(path("M0 0H8V8H0Z M2 2h2v2h-2z", "fill-rule=\"evenodd\"").even_odd);
     EXPECT_TRUE(path("M0 0H8V8H0Z", "style=\"stroke:red; fill-rule : evenodd\"").even_odd);
 }
@@ -104,7 +104,7 @@ TEST(SvgAperture, Arcs) {
     EXPECT_NEAR(area(read("<rect width=\"8\" height=\"6\" rx=\"2\"/>")), 48 - 4 * (4 - pi), 0.01);
     EXPECT_NEAR(area(read("<rect width=\"8\" height=\"6\" rx=\"9\" ry=\"3\"/>")), 12 * pi, 0.01);
     const camera::Polygon round = read("<circle cx=\"10\" cy=\"10\" r=\"7\"/>");
-    for (const camera::V2d& p : round.contours[0]) EXPECT_NEAR(p.length(), 7, 1e-4 * 7);
+    for (const V2d& p : round.contours[0]) EXPECT_NEAR(p.length(), 7, 1e-4 * 7);
 }
 
 TEST(SvgAperture, LengthsInUnits) {
@@ -116,7 +116,7 @@ TEST(SvgAperture, LengthsInUnits) {
 }
 
 TEST(SvgAperture, Transforms) {
-    const std::vector<camera::V2d> box = {{-6, 6}, {2, 6}, {2, -1}, {-6, -1}};
+    const std::vector<V2d> box = {{-6, 6}, {2, 6}, {2, -1}, {-6, -1}};
     const auto with = [](const std::string& transform) {
         return path("M0 0H8V7H0Z", "transform=\"" + transform + "\"");
     };

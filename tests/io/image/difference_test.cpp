@@ -181,6 +181,12 @@ TEST(ImageDiff, ChannelsOfBothAreCompared) {
         EXPECT_NE(channels_of_one(a, b).find("stderr.R"), std::string::npos);
     }
     EXPECT_EQ(channels_of_one(plain, plain), "");
+    EXPECT_EQ(channels_of_one(plain, stated), "channels only in the latter: stderr.R");
+    // A part of a layer does not pass for the whole.
+    const std::vector<LayerDifference> red = compare(picture(2, 1, {"R"}, {1, 2}), plain);
+    ASSERT_EQ(red.size(), 1u);
+    EXPECT_EQ(red[0].layer, "R");
+    EXPECT_EQ(red[0].symmetric_mse, std::nullopt);
 }
 
 TEST(ImageDiff, DisplayValuesAreNotComparedWithLight) {

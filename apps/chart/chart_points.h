@@ -9,10 +9,6 @@
 
 namespace petzval::apps {
 
-/// 0.975 quantile of Student's t: a series in 1 / degrees (Abramowitz and Stegun 1964, 26.7.5),
-/// within 1e-3 from 4 degrees of freedom on. degrees >= 4.
-[[nodiscard]] double student_t_975(double degrees);
-
 struct Interval {
     double mean = 0, low = 0, high = 0;
 };

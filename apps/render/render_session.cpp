@@ -14,6 +14,7 @@
 #include "apps/setup/input_files.h"
 #include "apps/setup/memory.h"
 #include "apps/setup/spectral_wording.h"
+#include "apps/setup/tracer.h"
 #include "apps/state/finished_film.h"
 #include "integrator/render/render.h"
 #include "integrator/render/render_to_noise.h"
@@ -196,8 +197,7 @@ void RenderSession::choose_display(const io::Notice& notice) {
 integrator::RenderResult RenderSession::render(integrator::RenderMonitor& monitor,
                                                const RenderRun& run) {
     flush_denormals();
-    const PreparedScene& prepared = setup_.prepared;
-    const integrator::PathTracer tracer(*prepared.scene, *prepared.bvh, *prepared.lights, path_);
+    const integrator::PathTracer<> tracer = tracer_of(setup_, path_);
     integrator::RenderJob job = job_;
     if (job.time_limit_s) *job.time_limit_s -= run.spent_s;
     job.at_pause = run.at_pause;

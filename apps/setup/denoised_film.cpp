@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/spectrum/bands.h"
 #include "io/base/format.h"
@@ -128,8 +127,7 @@ std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film,
                 variance += (double(a.variance[c]) + double(b.variance[c])) / (2 * scale);
             }
             denoised.add(x - crop.x0, y - crop.y0, squares, variance);
-            // (a - b)^2 / 4 of normal numbers with the variances of both halves varies by this.
-            noisy.add(x - crop.x0, y - crop.y0, noise, variance / std::numbers::sqrt2);
+            noisy.add(x - crop.x0, y - crop.y0, noise, 0);
         }
     const Rect all{0, 0, denoised.across(), denoised.down()};
     out->error = denoised.over(all);

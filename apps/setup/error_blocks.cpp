@@ -4,20 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/setup/student_t.h"
+
 namespace petzval::apps {
-namespace {
-
-// By how much wider such bounds are where a deviation is known from few numbers, which are its
-// degrees of freedom and one more: Student's t over kDeviations, Abramowitz and Stegun
-// 1964, 26.7.5.
-double widening(double numbers) {
-    constexpr double z = kDeviations, cube = z * z * z, fifth = cube * z * z;
-    const double degrees = numbers - 1;
-    if (degrees < 3) return (degrees < 2 ? 12.706 : 4.303) / z;  // too few for the series
-    return 1 + ((cube + z) / 4 + (5 * fifth + 16 * cube + 3 * z) / (96 * degrees)) / (degrees * z);
-}
-
-}  // namespace
 
 double DenoisedError::least() const {
     return std::sqrt(std::max(0., squared - kDeviations * deviation));
@@ -81,7 +70,9 @@ DenoisedError ErrorBlocks::over(const Rect& r) const {
     });
     if (groups < 2) return {mean, std::sqrt(std::max(all * all, chance)) / pixels};
     const double parted = squares * groups / (groups - 1);
-    return {mean, widening(groups) * std::sqrt(std::max(parted, chance)) / pixels};
+    // Wider, as the deviation is known from few numbers.
+    const double widening = student_t_975(groups - 1) / kDeviations;
+    return {mean, widening * std::sqrt(std::max(parted, chance)) / pixels};
 }
 
 }  // namespace petzval::apps

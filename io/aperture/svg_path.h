@@ -17,8 +17,7 @@ namespace petzval::io {
 namespace svg {
 
 struct Cubic {
-    V2d a, b,
-        end;  ///< the control points after the start, which is where the last one ended
+    V2d a, b, end;  ///< control points after the start, which is where the last one ended
     bool straight = false;
 };
 struct Subpath {

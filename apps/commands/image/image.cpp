@@ -77,8 +77,8 @@ void add_diff(CLI::App& image) {
         "symmetric MSE is the mean of (a - b)^2 / ((a^2 + b^2) / 2 + f^2), where f is {} times the "
         "reference's mid-grey: 0 for equal pictures, {:g} at most, and the same for light that is "
         "lost and light that is added. It is for light: the layers RGB, Y and denoised of an .exr. "
-        "relative "
-        "MSE is the mean of (a - b)^2 / (b^2 + {}); the peak of PSNR is the largest value of b.",
+        "relative MSE is the mean of (a - b)^2 / (b^2 + {}); the peak of PSNR is the largest value "
+        "of b.",
         io::kSymmetricFloorShare, io::kMostSymmetricMse, io::kRelativeMseEpsilon));
     diff->callback([options] { diff_command(*options); });
 }

@@ -72,6 +72,7 @@ template <class F>
 void for_each_region(int width, int height, int regions, const F& f) {
     f(Rect{0, 0, width, height});
     const int across = std::min(regions, width), down = std::min(regions, height);
+    if (across * down == 1) return;
     for (int j = 0; j < down; ++j)
         for (int i = 0; i < across; ++i)
             f(Rect{width * i / across, height * j / down, width * (i + 1) / across,
@@ -80,8 +81,7 @@ void for_each_region(int width, int height, int regions, const F& f) {
 
 /// Name of a part of a picture: "picture", or x,y,width,height of the full frame.
 std::string region_name(const Rect& part, const Rect& picture) {
-    const auto corners = [](const Rect& r) { return std::array{r.x0, r.y0, r.x1, r.y1}; };
-    if (corners(part) == corners(picture)) return "picture";
+    if (part == picture) return "picture";
     return fmt::format("{},{},{},{}", part.x0, part.y0, part.width(), part.height());
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "apps/chart/chart.h"
+#include "apps/setup/student_t.h"
 #include "io/file/csv.h"
 #include "io/image/symmetric_mse.h"
 #include "tests/support/cli.h"
@@ -18,6 +19,9 @@ using nlohmann::json;
 
 TEST(ChartPoints, QuantilesOfStudentsT) {
     // Abramowitz and Stegun 1964, table 26.10.
+    EXPECT_NEAR(student_t_975(1), 12.706, 1e-3);
+    EXPECT_NEAR(student_t_975(2), 4.303, 1e-3);
+    EXPECT_NEAR(student_t_975(3), 3.182, 2e-2);
     EXPECT_NEAR(student_t_975(4), 2.776, 1e-3);
     EXPECT_NEAR(student_t_975(9), 2.262, 1e-3);
     EXPECT_NEAR(student_t_975(30), 2.042, 1e-3);

@@ -53,6 +53,8 @@ TEST_F(CliDenoise, AStateTellsItsErrorByRegion) {
     EXPECT_THAT(said.out, HasSubstr(run.err.substr(at, run.err.find(", and", at) - at)));
     for (const char* region : {"\n8,8,24,16 ", "\n32,8,18,16 ", "\n8,24,24,18 ", "\n32,24,18,18 "})
         EXPECT_THAT(said.out, HasSubstr(region));
+    const Finished one = run_petzval({"image", "noise", path("a.state"), "--regions", "1"});
+    EXPECT_EQ(std::ranges::count(one.out, '\n'), 1);
     const Finished all = run_petzval({"image", "noise", path("a.state"), "--regions", "1000"});
     EXPECT_EQ(std::ranges::count(all.out, '\n'), 31);
 }

@@ -45,6 +45,9 @@ struct CameraPath {
     /// Aimed at a small lamp: alpha and layers do without.
     bool to_target = false;
     bool of_ghost = false;  ///< brings light that the lens reflects; to_target as well
+    /// Number of the ray to a target among so many of the sample: each has random numbers of its
+    /// own.
+    uint8_t target_ray = 0, target_rays = 1;
 };
 
 /// Counts of the wavelength lanes that a lens was asked for, by why it lost them; drawn - lost()
@@ -72,10 +75,12 @@ struct LensLosses {
 };
 
 /// Camera paths of one film point. None: vignetted. 1: shared by all lanes. 2 to 4: split by
-/// dispersion. As many again may go to a target, all these again to a lamp's star, 5 be of ghosts.
+/// dispersion. Rays to targets come with them: as many again, or those of a shared ray. All these
+/// may come again of a lamp's star, and 5 of ghosts.
 class CameraSample {
   public:
-    static constexpr size_t kMostPaths = 21;
+    static constexpr size_t kMostTargetRays = 8;  ///< of a ray that all lanes share
+    static constexpr size_t kMostPaths = 2 * (1 + kMostTargetRays) + 5;
 
     LensLosses<uint32_t> lanes;
     float exposure = 1;  ///< mean weight of a lane where nothing is lost

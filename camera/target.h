@@ -6,20 +6,24 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "camera/camera.h"
 #include "camera/film_cell.h"
-#include "core/math/math.h"
+#include "core/math/astigmatic_image.h"
 
 namespace petzval::camera {
 
-/// A ball in the scene. It is a window that rays go through, not an object: whatever a ray meets,
-/// the picture stays right, and only its noise depends on where targets are.
+/// A ball in the scene, or an image in its place. It is a window that rays go through, not an
+/// object: whatever a ray meets, the picture stays right, and only its noise depends on where
+/// targets are.
 struct Target {
     V3f centre;                ///< world, metres; a unit direction for what lies at infinity
     float radius_m = 0;        ///< above 0; at infinity the tangent of the angle
     bool at_infinity = false;  ///< a spot of the sky
+    std::optional<AstigmaticImage> image{};
 };
 
 /// Eight-sided part of the film: by x, y, x + y and x - y of its points.
@@ -56,11 +60,11 @@ struct FilmOctagon {
 /// A target as the film points of a cell see it, by the rays of a StopMap.
 ///
 /// A ray that passes the plane of the map at p with the slopes m lands at
-/// (by_place p + by_slope m - centre) / radius: within 1 where it passes the target.
+/// by_place(p) + by_slope(m) - centre: within 1 where it passes the target.
 struct ListedTarget {
     V2f centre;
-    float by_place, by_slope;
-    float radius;
+    Linear2f by_place, by_slope;
+    V2f most{0.f};          ///< that by_place and by_slope stretch anything
     FilmOctagon seen_from;  ///< film points that may see it, and middles of their pixels
     /// Squares of the map that rays may cross on their way here, by bits.
     uint64_t squares = 0;
@@ -72,9 +76,7 @@ struct ListedTarget {
     uint32_t number = 0;  ///< in TargetGrid::targets
 
     /// Length on the target, in its radii, of a length in the plane and a slope.
-    [[nodiscard]] float in_radii(V2f place_and_slope) const {
-        return (by_place * place_and_slope.x + by_slope * place_and_slope.y) / radius;
-    }
+    [[nodiscard]] float in_radii(V2f place_and_slope) const { return most.dot(place_and_slope); }
 };
 
 class StopMap;
@@ -83,7 +85,7 @@ class StopMap;
 struct TargetCell {
     std::shared_ptr<const StopMap> map;  ///< nullptr only where there are no targets
     std::vector<ListedTarget> targets;
-    static constexpr uint32_t kMostRays = 2;
+    static constexpr uint32_t kMostRays = CameraSample::kMostTargetRays;
     uint32_t rays =
         1;  ///< of a sample to its targets, where all lanes share them; at most kMostRays
 

@@ -23,15 +23,28 @@ std::optional<ListedTarget> in_frame(const StopMap& map, const Pose& pose, const
     if (!(at.z > 0)) return std::nullopt;
     ListedTarget out{};
     const float slant = std::sqrt(1 + sqr(map.most_slope()));
+    const auto z = static_cast<float>(at.z);
     if (target.at_infinity) {
-        out.centre = V2f(V2d(at.x / at.z, at.y / at.z));
-        out.by_place = 0, out.by_slope = 1;
-        out.radius = target.radius_m * slant * slant;
+        const float per = 1 / (target.radius_m * slant * slant);
+        out.centre = V2f(V2d(at.x / at.z, at.y / at.z)) * per;
+        out.by_place = Linear2f() * 0.f, out.by_slope = Linear2f() * per;
+    } else if (const auto& image = target.image) {
+        const auto turned = [&](const V3f& d) { return V3f(map.turned(pose.local(d))); };
+        const V3f along = turned(image->along), x = turned(image->x), y = turned(image->y);
+        if (!(along.z > 0)) return std::nullopt;
+        const Linear2f across{V2f(x.x, y.x), V2f(x.y, y.y)};
+        out.by_place = image->place_per_m.after(across);
+        const Linear2f by_direction =
+            image->place_per_m.after(image->passes_m).after(across) * along.z;
+        out.by_slope = out.by_place * z + by_direction * -1.f;
+        out.centre =
+            out.by_place(V2f(V2d(at.x, at.y))) - by_direction(V2f(along.x, along.y) / along.z);
     } else {
-        out.centre = V2f(V2d(at.x, at.y));
-        out.by_place = 1, out.by_slope = static_cast<float>(at.z);
-        out.radius = target.radius_m * slant;
+        const float per = 1 / (target.radius_m * slant);
+        out.centre = V2f(V2d(at.x, at.y)) * per;
+        out.by_place = Linear2f() * per, out.by_slope = Linear2f() * (z * per);
     }
+    out.most = V2f(out.by_place.most(), out.by_slope.most());
     return out;
 }
 
@@ -62,12 +75,11 @@ FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_
         const V2f film = map.middle() - by.film_for(landing(at(middle, stop), target));
         const float error = target.in_radii(map.error(StopMap::square(stop)));
         // The target's radius, and the reach of a filter.
-        const float wide =
-            (1 + error) * std::sqrt(std::max(by.right.length2(), by.down.length2())) / by.area() +
-            out.beyond;
+        const std::array<V2f, 4> across{by.down, by.right, by.down - by.right, by.down + by.right};
         const auto along = FilmOctagon::along(film);
         for (size_t k = 0; k < 4; ++k) {
-            const float reach = k < 2 ? wide : FilmOctagon::kRoot2 * wide;
+            const float reach = (1 + error) * across[k].length() / by.area() +
+                                (k < 2 ? 1 : FilmOctagon::kRoot2) * out.beyond;
             out.low[k] = std::min(out.low[k], along[k] - reach);
             out.high[k] = std::max(out.high[k], along[k] + reach);
         }

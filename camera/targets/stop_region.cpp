@@ -30,25 +30,21 @@ constexpr float kRoot2 = 1.41421356f;
 }  // namespace
 
 LandingMap::LandingMap(const StopMap::Rays& rays, const ListedTarget& t) {
-    const float per = 1 / t.radius, place = t.by_place * per, slope = t.by_slope * per;
     for (size_t k = 0; k < StopMap::kTerms; ++k) {
-        x[k] = place * rays[k][0] + slope * rays[k][2];
-        y[k] = place * rays[k][1] + slope * rays[k][3];
+        const V2f landed =
+            t.by_place(V2f(rays[k][0], rays[k][1])) + t.by_slope(V2f(rays[k][2], rays[k][3]));
+        x[k] = landed.x, y[k] = landed.y;
     }
-    x[0] -= t.centre.x * per, y[0] -= t.centre.y * per;
+    x[0] -= t.centre.x, y[0] -= t.centre.y;
 }
 
 V2f landing(const f4& ray, const ListedTarget& t) {
-    return V2f(t.by_place * ray[0] + t.by_slope * ray[2] - t.centre.x,
-               t.by_place * ray[1] + t.by_slope * ray[3] - t.centre.y) /
-           t.radius;
+    return t.by_place(V2f(ray[0], ray[1])) + t.by_slope(V2f(ray[2], ray[3])) - t.centre;
 }
 
 FilmMotion::FilmMotion(const std::array<StopMap::Rays, 2>& by_film, const ListedTarget& target,
                        V2f stop) {
-    const auto change = [&](const f4& ray) {
-        return landing(ray, target) + target.centre / target.radius;
-    };
+    const auto change = [&](const f4& ray) { return landing(ray, target) + target.centre; };
     right = change(at(by_film[0], stop)), down = change(at(by_film[1], stop));
 }
 
@@ -234,7 +230,7 @@ size_t StopRegion::find(const LandingMap& map, const Eight& eight, float half, L
 StopRegion::StopRegion(const StopMap& map, const StopMap::Rays& rays, const ListedTarget& target,
                        float wider) {
     const LandingMap landing(rays, target);
-    const float place = target.by_place / target.radius, slope = target.by_slope / target.radius;
+    const auto [place, slope] = std::pair(target.most.x, target.most.y);
     const auto reach_of = [&](size_t n) {
         const V2f error = map.error(n);
         return 1 + place * error.x + slope * error.y + wider;

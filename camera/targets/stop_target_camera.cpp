@@ -227,7 +227,13 @@ void StopTargetCamera::sample_targets(std::span<const FilmPoint> points,
         // know.
         for (size_t n = 0; n < count; ++n)
             for (const CameraPath& path : found[n])
-                if (path.mis_weight < 1) out[aimed[n].of].add() = path;
+                if (path.mis_weight < 1) {
+                    CameraPath& sent_path = out[aimed[n].of].add();
+                    sent_path = path;
+                    sent_path.target_ray = static_cast<uint8_t>(ray);
+                    sent_path.target_rays = static_cast<uint8_t>(
+                        rays_of(*sent_cells[n], points[aimed[n].of], sent_bands[n]));
+                }
     }
 }
 

@@ -33,8 +33,8 @@ bool may_be_target(const SmallFeature& feature) {
 }  // namespace
 
 Target target_of(const SmallFeature& lamp) {
-    return {lamp.centre, lamp.at_infinity ? std::tan(lamp.reach_m) : lamp.reach_m,
-            lamp.at_infinity};
+    return {lamp.centre, lamp.at_infinity ? std::tan(lamp.reach_m) : lamp.reach_m, lamp.at_infinity,
+            lamp.image};
 }
 
 std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i size_px,

@@ -3,8 +3,10 @@
 // wavelength, and what shines.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "core/math/astigmatic_image.h"
 #include "core/scene/scene.h"
 
 namespace petzval {
@@ -22,6 +24,7 @@ struct SmallFeature {
     bool at_infinity = false;  ///< a spot of the sky
     double area_m2 = 0;        ///< of a lamp: half its surface; at infinity: sr
     double radiance = 0;       ///< of a lamp: mean luminance, nits
+    std::optional<AstigmaticImage> image{};  ///< of a lamp that is seen mirrored or through glass
 
     /// Whether it is a lamp.
     [[nodiscard]] bool is_lamp() const { return kind == Kind::Lamp; }

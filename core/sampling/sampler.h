@@ -10,6 +10,7 @@ namespace petzval {
 
 /// Owen: Sobol points, nested uniform scrambling. Sobol: the same points, digits shifted only.
 /// Independent: a hash. Every kind pads: each dimension has a shuffled 2-D sequence of its own.
+/// Film and Lens have one of four dimensions together.
 enum class SamplerKind { Owen, Sobol, Independent };
 
 /// Named uses of random numbers, so that adding one leaves the others as they were.
@@ -87,6 +88,12 @@ class Sampler {
     /// Both coordinates of a point for a dimension's key; Word may be several keys side by side.
     template <class Word>
     [[nodiscard]] std::pair<Word, Word> bits(Word key) const;
+    /// Likewise, of the point of the lens, which belongs to that of the film.
+    [[nodiscard]] std::pair<uint32_t, uint32_t> lens_bits() const;
+    template <class Word>
+    [[nodiscard]] Word shuffled_index(Word key) const;
+    template <class Word>
+    [[nodiscard]] std::pair<Word, Word> scrambled(Word x, Word y, Word key) const;
 
     SamplerKind kind_ = SamplerKind::Owen;
     uint32_t key_ = 0, index_ = 0, reversed_ = 0;  ///< reversed_: index_, lowest bit first

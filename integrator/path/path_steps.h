@@ -122,8 +122,14 @@ template <RayCaster Caster, class Watch>
 [[gnu::always_inline]] inline auto PathTracer<Caster, Watch>::scatter(
     PathState& path, const Scattering& at, const Sampler::VertexNumbers& u) const
     -> std::optional<Onward> {
-    const auto next = at.bsdf.sample(u.bsdf_lobe, u.bsdf, path.hero_decided);
+    // Solid glass mirrors little, and a ray may have been sent to an image in it. Small numbers,
+    // with which clear glass mirrors, are drawn more often.
+    const bool may_be_image = path.continue_probability < 1.f && path.scatterings == 0 &&
+                              at.bsdf.is_clear() && !at.shading.bsdf.thin;
+    auto next =
+        at.bsdf.sample(may_be_image ? sqr(u.bsdf_lobe) : u.bsdf_lobe, u.bsdf, path.hero_decided);
     if (!next) return watch_.ends(PathStep::Absorbed);
+    if (may_be_image) next->weight *= 2.f * u.bsdf_lobe;
     const bool is_clear = next->delta && at.bsdf.is_clear();
     if (is_clear && path.specular_depth == options_.max_specular_depth) {
         ++path.stats.specular_ends;

@@ -5,55 +5,34 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <optional>
+#include <tuple>
 
 #include "camera/ray_bundle.h"
 #include "core/sampling/prepass_seed.h"
-#include "core/shading/surface.h"
-#include "core/spectrum/colour.h"
-#include "integrator/path/front_at_back.h"
+#include "integrator/prepass/highlight_search.h"
 
 namespace petzval::integrator {
 namespace {
 
 constexpr int kCell_px = 16;
 constexpr int kRaysOfCell = 16;
-/// Rays of the search for a pixel.
-constexpr double kSearchRays = 1. / 16;
+/// Rays of the search for a pixel; and more, where something is found, for each image so many.
+constexpr double kSearchRays = 1. / 16, kMoreRays = 0.5;
+constexpr int64_t kRaysOfImage = 400;
+/// Objects that are looked at by themselves: at most so many for a cell, of so many that are tried.
+constexpr size_t kObjectsOfCell = 4, kMostTried = 8192;
 /// Lamps that are looked for in a surface, strongest first.
 constexpr size_t kMostLamps = 16;
 /// Images that are found at most.
-constexpr size_t kMostFound = 256;
-/// A rougher surface has no highlights that are small.
-constexpr float kMostRoughness = 0.35f;
-/// Half-width of a highlight of a rough surface: slopes of so many alpha bring most of the light.
-constexpr float kAlphas = 1.5f;
-/// Largest half-width of an image that is looked for, as the lens sees it, radians.
-constexpr float kMostAngle = 0.05f;
-/// Long side of an image over its short one.
-constexpr float kMostStretched = 30;
-/// Half-widths from the middle of the highlight at which it is found.
-constexpr float kTolerance = 0.02f;
-constexpr int kMostSteps = 12;
-/// Difference of directions by which derivatives are taken, radians.
-constexpr float kDifference = 1e-4f;
+constexpr size_t kMostFound = 1024;
 /// Searches for a lamp in an object that may fail, or find an image again, before it is given up.
 constexpr int kMostFailures = 6;
 /// Points of the lens for which an image is looked for, and of those at least that agree.
 constexpr size_t kEyes = 8, kFewestEyes = 4;
+/// Half-widths by which rays may miss an image for it to be one.
+constexpr float kMostOff = 3;
 /// Times the usual distance from the point where the rays of an image meet.
 constexpr double kOutlier = 4;
-
-/// A lamp to look for, or a light without size.
-struct Source {
-    V3f centre;  ///< at infinity the unit direction to it
-    bool at_infinity;
-    float reach_m;  ///< at infinity: radians
-    double light;   ///< nits; of a light without size: its illuminance at 1 m, or in lux
-    double strength;
-
-    [[nodiscard]] bool has_size() const { return reach_m > 0; }
-};
 
 std::vector<Source> sources_of(const Scene& scene, std::span<const SmallFeature> features) {
     std::vector<Source> out;
@@ -86,164 +65,15 @@ struct Start {
     V3f eye, direction;
     uint32_t instance;
     size_t cell;
-};
-
-/// Where a ray from the lens meets a polished surface.
-struct Met {
-    Surface surface;
-    V3f normal;  ///< the shaded one, unit, on the ray's side
-    float alpha;
-    double reflectance;
-
-    [[nodiscard]] V3f to(const Source& lamp) const {
-        return lamp.at_infinity ? lamp.centre : unit(lamp.centre - surface.p);
-    }
-    [[nodiscard]] float distance_m(const Source& lamp) const {
-        return (lamp.centre - surface.p).length();
-    }
-    /// Half-width in slopes of what a lamp makes of the surface: its own, and the roughness's.
-    [[nodiscard]] float half_width(const Source& lamp) const {
-        return std::hypot(own_half_width(lamp), kAlphas * alpha);
-    }
-    [[nodiscard]] float own_half_width(const Source& lamp) const {
-        return lamp.reach_m / (lamp.at_infinity ? 2 : 2 * distance_m(lamp));
-    }
-};
-
-/// A lamp as one point of the lens sees it in a surface.
-struct Mirrored {
-    V3f eye, direction;
-    Met met;
-    float angle;  ///< half-width, radians
-};
-
-class HighlightSearch {
-  public:
-    HighlightSearch(const Scene& scene, const Bvh& bvh, int64_t most_rays)
-        : scene_(scene), bvh_(bvh), rays_left_(most_rays) {}
-
-    [[nodiscard]] bool may_go_on() const { return rays_left_ > 0; }
-
-    /// Nothing where the ray meets no polished surface first.
-    [[nodiscard]] std::optional<Met> meet(const V3f& eye, const V3f& direction) {
-        Ray ray{eye, direction};
-        --rays_left_;
-        while (const std::optional<Hit> hit = bvh_.intersect(ray)) {
-            Surface s = make_surface(scene_, direction, *hit);
-            if (culled_from_view(s)) {
-                if (const auto front = front_at_back(scene_, bvh_, ray, s)) {
-                    s = *front;
-                } else {
-                    ray.origin = offset_origin(s.p, s.p_error, s.ng, direction);
-                    continue;
-                }
-            }
-            if (s.material->unlit) return std::nullopt;
-            const ShadingInput at = read_material(scene_, s, -direction, Bands::rgb());
-            if (at.coat.weight > 0.f && at.coat.roughness < at.bsdf.roughness &&
-                at.coat.roughness <= kMostRoughness)
-                return Met{s, at.frame.to_world(at.coat.normal), sqr(at.coat.roughness),
-                           kCoatF0 * double(at.coat.weight)};
-            if (!(at.bsdf.roughness <= kMostRoughness)) return std::nullopt;
-            return Met{s, at.frame.z, sqr(at.bsdf.roughness), reflectance_of(at.bsdf)};
-        }
-        return std::nullopt;
-    }
-
-    /// The image of a lamp that a point of the lens sees near a direction, by Newton's method: for
-    /// the direction, until the shaded normal is the one that mirrors.
-    [[nodiscard]] std::optional<Mirrored> mirrored(const V3f& eye, V3f direction,
-                                                   const Source& lamp) {
-        std::optional<Met> here = meet(eye, direction);
-        for (int i = 0; i < kMostSteps && here && rays_left_ > 0; ++i) {
-            const auto half = half_way(*here, direction, lamp);
-            if (!half) break;
-            const Frame across = Frame::about(*half), about = Frame::about(direction);
-            const auto miss = [&](const Met& met, const V3f& seen) -> std::optional<V2f> {
-                const auto wanted = half_way(met, seen, lamp);
-                if (!wanted || met.surface.instance != here->surface.instance) return std::nullopt;
-                const V3f off = met.normal - *wanted;
-                return V2f(off.dot(across.x), off.dot(across.y));
-            };
-            const auto moved = [&](const V3f& by) -> std::optional<V2f> {
-                const V3f seen = unit(direction + by);
-                const auto met = meet(eye, seen);
-                return met ? miss(*met, seen) : std::nullopt;
-            };
-            const auto f = miss(*here, direction), right = moved(kDifference * about.x),
-                       above = moved(kDifference * about.y);
-            if (!f || !right || !above) break;
-            const V2f by_x = (*right - *f) / kDifference, by_y = (*above - *f) / kDifference;
-            const float determinant = by_x.x * by_y.y - by_x.y * by_y.x;
-            const float width = here->half_width(lamp);
-            if (f->length() < kTolerance * width) {
-                if (!(here->normal.dot(*half) > 0.f)) break;
-                return finished(eye, direction, *here, by_x, by_y, width);
-            }
-            const V2f step((by_y.y * f->x - by_y.x * f->y) / -determinant,
-                           (by_x.x * f->y - by_x.y * f->x) / -determinant);
-            if (!(step.length() < 1.f)) break;
-            std::optional<Met> next;
-            for (float part = 1; part > 0.1f && !next; part /= 2) {
-                const V3f seen = unit(direction + part * (step.x * about.x + step.y * about.y));
-                const auto met = meet(eye, seen);
-                const auto off = met ? miss(*met, seen) : std::nullopt;
-                if (!off || !(off->length() < f->length())) continue;
-                next = met;
-                direction = seen;
-            }
-            here = next;
-        }
-        return std::nullopt;
-    }
-
-    /// Whether something stands between a surface and a lamp.
-    [[nodiscard]] bool is_hidden(const Mirrored& image, const Source& lamp) {
-        --rays_left_;
-        const Met& met = image.met;
-        Ray shadow{leave_surface(met.surface, met.to(lamp), false), met.to(lamp)};
-        if (!lamp.at_infinity)
-            shadow.t_max = std::max(0.f, 0.999f * met.distance_m(lamp) - lamp.reach_m);
-        return bvh_.occluded(shadow);
-    }
-
-  private:
-    [[nodiscard]] static double reflectance_of(const BsdfInput& b) {
-        const auto grey = [](f4 v) { return double(luminance(to_rgb(v, Bands::rgb()))); };
-        const double metal = b.measured_metal ? 0.7 : grey(b.base_color);
-        return lerp(float(grey(b.dielectric_f0)), float(metal), b.metallic);
-    }
-    [[nodiscard]] static std::optional<V3f> half_way(const Met& met, const V3f& seen,
-                                                     const Source& lamp) {
-        const V3f sum = met.to(lamp) - seen;
-        if (!(sum.length2() > 1e-6f)) return std::nullopt;
-        return unit(sum);
-    }
-    /// Nothing where the image is too large or too long.
-    [[nodiscard]] static std::optional<Mirrored> finished(const V3f& eye, const V3f& direction,
-                                                          const Met& met, V2f by_x, V2f by_y,
-                                                          float width) {
-        // Singular values of the derivatives: largest and smallest slope for a radian.
-        const float sum = by_x.length2() + by_y.length2();
-        const float determinant = std::fabs(by_x.x * by_y.y - by_x.y * by_y.x);
-        const float root = safe_sqrt(sqr(sum / 2) - sqr(determinant));
-        const float largest = std::sqrt(sum / 2 + root), smallest = determinant / largest;
-        if (!(width < kMostAngle * smallest) || !(largest < kMostStretched * smallest))
-            return std::nullopt;
-        return Mirrored{eye, direction, met, width / smallest};
-    }
-
-    const Scene& scene_;
-    const Bvh& bvh_;
-    int64_t rays_left_;
+    Way way;
 };
 
 /// The point where rays seem to meet, with least squares: that with the smallest distance to them;
 /// nothing where they are parallel.
-std::optional<V3d> meeting_point(const std::vector<Mirrored>& images) {
+std::optional<V3d> meeting_point(const std::vector<LampImage>& images) {
     V3d b(0.);
     Imath::M33d m(0.);  // symmetric
-    for (const Mirrored& image : images) {
+    for (const LampImage& image : images) {
         const V3d d(image.direction), o(image.eye);
         for (int i = 0; i < 3; ++i) {
             V3d row = -d[i] * d;
@@ -256,33 +86,106 @@ std::optional<V3d> meeting_point(const std::vector<Mirrored>& images) {
     return b * m.inverse();
 }
 
-double distance_m(const Mirrored& image, const V3d& point) {
+double distance_m(const LampImage& image, const V3d& point) {
     return (point - V3d(image.eye)).cross(V3d(image.direction)).length();
 }
 
 /// Luminance of an image: what a rough surface spreads over more slopes is as much darker.
-double luminance_of(const Mirrored& image, const Source& lamp) {
+double luminance_of(const LampImage& image, const Source& lamp) {
     const Met& met = image.met;
     const double width = double(met.half_width(lamp)), own = double(met.own_half_width(lamp));
-    const double spread = met.reflectance * lamp.light / (width * width);
+    const double spread = met.share * lamp.light / (width * width);
     if (lamp.has_size()) return spread * own * own;
     const double away_m = lamp.at_infinity ? 1. : double(met.distance_m(lamp));
     return spread / (4 * double(kPi) * away_m * away_m);
 }
 
+/// Where the rays of an image pass its middle, by their directions.
+struct Passing {
+    V2f middle_m;        ///< of the mean direction
+    Linear2f by_change;  ///< metres, for a change of the direction
+};
+
+/// By least squares; nothing where the directions differ by less than `least` in some way, as a
+/// standard deviation.
+std::optional<Passing> passing(const std::vector<V2d>& changes, const std::vector<V2d>& places_m,
+                               double least) {
+    Imath::M33d m(0.);
+    V3d x(0.), y(0.);
+    for (size_t n = 0; n < changes.size(); ++n) {
+        const V3d row(1, changes[n].x, changes[n].y);
+        for (int i = 0; i < 3; ++i)
+            for (int k = 0; k < 3; ++k) m[i][k] += row[i] * row[k];
+        x += row * places_m[n].x, y += row * places_m[n].y;
+    }
+    const double count = m[0][0];
+    const V2f mean(V2d(m[0][1], m[0][2]) / count);
+    const auto both = static_cast<float>(m[1][2] / count) - mean.x * mean.y;
+    const Linear2f spread{V2f(static_cast<float>(m[1][1] / count) - sqr(mean.x), both),
+                          V2f(both, static_cast<float>(m[2][2] / count) - sqr(mean.y))};
+    if (!(double(spread.determinant()) > least * least * double(spread.most())))
+        return std::nullopt;
+    const Imath::M33d inverse = m.inverse();
+    x = x * inverse, y = y * inverse;
+    return Passing{V2f(V2d(x[0], y[0])), {V2f(V2d(x[1], y[1])), V2f(V2d(x[2], y[2]))}};
+}
+
+/// Makes the ball about an image the image itself: what rays through all points of the lens have in
+/// common. It stays a ball where they do not tell. angle: half-width of the image, radians.
+void see_astigmatism(SmallFeature& ball, const std::vector<LampImage>& images, const V3d& mean,
+                     double angle, double luminance) {
+    const Frame frame = Frame::about(V3f(mean));
+    const V3d x(frame.x), y(frame.y);
+    const auto across = [&](const V3d& v) { return V2d(v.dot(x), v.dot(y)); };
+    std::vector<V2d> changes, places_m;
+    const auto away_m = [&](const LampImage& image) {
+        return (V3d(ball.centre) - V3d(image.eye)).dot(mean) / V3d(image.direction).dot(mean);
+    };
+    for (const LampImage& image : images) {
+        const V3d direction(image.direction);
+        changes.push_back(across(direction));
+        places_m.push_back(across(V3d(image.eye) + away_m(image) * direction - V3d(ball.centre)));
+    }
+    const auto fitted = passing(changes, places_m, angle / 2);
+    if (!fitted) return;
+    // Rays from one eye: a change of the direction moves the place, and what belongs to the new
+    // direction.
+    const Frame about = Frame::about(images[0].direction);
+    const Linear2f turned{V2f(about.x.dot(frame.x), about.y.dot(frame.x)),
+                          V2f(about.x.dot(frame.y), about.y.dot(frame.y))},
+        by_change = Linear2f() * static_cast<float>(away_m(images[0])) + fitted->by_change * -1.f;
+    Linear2f place_per_m = images[0].in_half_widths.after(turned).after(by_change.inverse());
+    float off = 0;
+    for (size_t n = 0; n < changes.size(); ++n)
+        off = std::max(off, place_per_m(V2f(places_m[n]) - fitted->middle_m -
+                                        fitted->by_change(V2f(changes[n])))
+                                .length());
+    const double area_m2 = double(kPi) / std::fabs(double(place_per_m.determinant()));
+    if (!(off < kMostOff) || !std::isfinite(area_m2)) return;
+    place_per_m = place_per_m * (1 / (1 + off));
+    const V3f moved = fitted->middle_m.x * frame.x + fitted->middle_m.y * frame.y;
+    ball.centre += moved;
+    ball.reach_m += moved.length();
+    ball.radius_m = ball.reach_m;
+    ball.image = {V3f(mean), frame.x, frame.y, fitted->by_change, place_per_m};
+    ball.radiance = luminance / double(sqr(1 + off));
+    ball.area_m2 = area_m2 * double(sqr(1 + off));
+}
+
 /// The image that several points of the lens see, as a lamp.
-std::optional<SmallFeature> thing_of(std::vector<Mirrored> images, const Source& lamp) {
+std::optional<SmallFeature> thing_of(std::vector<LampImage> images, const Source& lamp) {
     SmallFeature out{SmallFeature::Kind::Lamp, V3f(0.f)};
     V3d mean(0.);
-    double angle = 0;
-    for (const Mirrored& image : images) {
+    double angle = 0, luminance = 0;
+    for (const LampImage& image : images) {
         mean += V3d(image.direction);
         angle = std::max(angle, double(image.angle));
-        out.radiance += luminance_of(image, lamp) / double(images.size());
+        luminance += luminance_of(image, lamp) / double(images.size());
     }
+    out.radiance = luminance;
     mean.normalize();
     double spread = 0;
-    for (const Mirrored& image : images)
+    for (const LampImage& image : images)
         spread = std::max(spread, (V3d(image.direction) - mean).length());
     if (spread <= angle / 2) {
         out.at_infinity = true;
@@ -295,7 +198,7 @@ std::optional<SmallFeature> thing_of(std::vector<Mirrored> images, const Source&
     // out.
     std::optional<V3d> centre = meeting_point(images);
     while (centre && images.size() > kFewestEyes) {
-        std::sort(images.begin(), images.end(), [&](const Mirrored& a, const Mirrored& b) {
+        std::sort(images.begin(), images.end(), [&](const LampImage& a, const LampImage& b) {
             return distance_m(a, *centre) < distance_m(b, *centre);
         });
         const double middle = distance_m(images[images.size() / 2], *centre);
@@ -305,7 +208,7 @@ std::optional<SmallFeature> thing_of(std::vector<Mirrored> images, const Source&
     }
     if (!centre) return std::nullopt;
     double farthest_m = 0, off_m = 0;
-    for (const Mirrored& image : images) {
+    for (const LampImage& image : images) {
         const double along = (*centre - V3d(image.eye)).dot(V3d(image.direction));
         if (!(along > 0)) return std::nullopt;
         farthest_m = std::max(farthest_m, along);
@@ -317,6 +220,7 @@ std::optional<SmallFeature> thing_of(std::vector<Mirrored> images, const Source&
     // Spread over the disc: an image that is blurred must not look like a large lamp.
     out.radiance *= image_m * image_m / (reach_m * reach_m);
     out.area_m2 = double(kPi) * double(out.reach_m) * double(out.reach_m);
+    see_astigmatism(out, images, mean, angle, luminance);
     return out;
 }
 
@@ -335,47 +239,89 @@ bool is_same(const SmallFeature& a, const SmallFeature& b, const V3f& eye) {
 
 /// The image of a lamp near a start, as that point of the lens and others see it.
 std::optional<SmallFeature> image_from(HighlightSearch& search, const Start& start,
-                                       const std::vector<V3f>& eyes, const Source& lamp) {
-    const auto found = search.mirrored(start.eye, start.direction, lamp);
+                                       const std::vector<Ray>& eyes, const Source& lamp) {
+    const auto found = search.image(start.eye, start.direction, lamp, start.way);
     if (!found || search.is_hidden(*found, lamp)) return std::nullopt;
-    std::vector<Mirrored> images{*found};
-    for (const V3f& eye : eyes) {
+    std::vector<LampImage> images{*found};
+    for (const Ray& ray : eyes) {
+        const V3f& eye = ray.origin;
         if (images.size() == kEyes) break;
         if (eye == start.eye) continue;
-        if (const auto more = search.mirrored(eye, unit(found->met.surface.p - eye), lamp))
+        if (const auto more = search.image(eye, unit(found->met.first - eye), lamp, start.way))
             images.push_back(*more);
     }
     if (images.size() < kFewestEyes) return std::nullopt;
     return thing_of(std::move(images), lamp);
 }
 
-/// Rays of all cells of a frame that meet polished surfaces, the objects by turns.
-std::vector<Start> starts_of(const camera::Camera& camera, HighlightSearch& search, V2i frame_px,
-                             std::vector<std::vector<V3f>>& eyes) {
-    const V2i cells = frame_px / kCell_px;
-    std::map<uint32_t, std::vector<Start>> by_instance;
-    for (int j = 0; j < cells.y; ++j)
-        for (int i = 0; i < cells.x; ++i) {
-            std::vector<V3f>& eyes_of_cell = eyes.emplace_back();
-            const camera::FilmCell cell{V2f(V2i(i, j)) / V2f(cells),
-                                        V2f(V2i(i + 1, j + 1)) / V2f(cells)};
-            for (const Ray& ray :
-                 camera::bundle_of(camera, cell, number_of(PrepassSeed::Highlights), {i, j},
-                                   kRaysOfCell)
-                     .rays) {
-                eyes_of_cell.push_back(ray.origin);
-                if (const auto met = search.meet(ray.origin, ray.direction))
-                    by_instance[met->surface.hit.instance].push_back(
-                        {ray.origin, ray.direction, met->surface.hit.instance, eyes.size() - 1});
-            }
+bool may_be_polished(const Material& m) {
+    return m.roughness <= kMostRoughness || m.metallic_roughness_texture.present() ||
+           (m.coat > 0 && m.coat_roughness <= kMostRoughness);
+}
+
+/// Middles of meshes, found as they are asked for.
+class Middles {
+  public:
+    explicit Middles(const Scene& scene) : scene_(scene), of_mesh_(scene.meshes.size()) {}
+
+    [[nodiscard]] V3f of(const Instance& instance) {
+        std::optional<V3f>& middle = of_mesh_[instance.mesh];
+        if (!middle) {
+            Box3f box;
+            for (const V3f& p : scene_.meshes[instance.mesh].positions) box.extendBy(p);
+            middle = box.center();
         }
+        V3f out;
+        instance.to_world.multVecMatrix(*middle, out);
+        return out;
+    }
+
+  private:
+    const Scene& scene_;
+    std::vector<std::optional<V3f>> of_mesh_;
+};
+
+/// What the cells of a frame see.
+struct SeenCells {
+    std::vector<camera::RayBundle> bundles;
+    V3f eye{0.f};                                   ///< mean of their origins
+    std::map<uint32_t, std::vector<Start>> starts;  ///< by object
+
+    void look(HighlightSearch& search, const Ray& ray, size_t cell,
+              std::optional<uint32_t> only = {}) {
+        const auto shaded = search.first(ray);
+        if (!shaded) return;
+        for (const Way way : {Way::Mirrored, Way::Through}) {
+            const auto met = search.met(*shaded, ray.direction, way);
+            if (!met) continue;
+            const uint32_t instance = met->surface.hit.instance;
+            if (!only || instance == *only)
+                starts[instance].push_back({ray.origin, ray.direction, instance, cell, way});
+        }
+    }
+    /// Cell that looks towards a point, as seen from the middle of the lens; none beyond the frame.
+    [[nodiscard]] std::optional<size_t> towards(const V3f& point) const {
+        std::optional<size_t> best;
+        float most = -1;
+        const V3f direction = unit(point - eye);
+        for (size_t n = 0; n < bundles.size(); ++n) {
+            if (bundles[n].rays.empty()) continue;
+            const float cosine = direction.dot(bundles[n].direction);
+            if (cosine > most && cosine >= bundles[n].least_cosine) best = n, most = cosine;
+        }
+        return best;
+    }
+};
+
+/// Rays that meet polished surfaces, the objects by turns.
+std::vector<Start> in_turns(const std::map<uint32_t, std::vector<Start>>& by_object) {
     // First one of each object, then another of each. Neighbours see the same: they are mixed.
     struct Turn {
         size_t turn;
         Start start;
     };
     std::vector<Turn> turns;
-    for (const auto& [instance, starts] : by_instance) {
+    for (const auto& [instance, starts] : by_object) {
         std::vector<size_t> order(starts.size());
         std::iota(order.begin(), order.end(), 0);
         std::sort(order.begin(), order.end(), [](size_t a, size_t b) {
@@ -390,6 +336,41 @@ std::vector<Start> starts_of(const camera::Camera& camera, HighlightSearch& sear
     return out;
 }
 
+SeenCells cells_of(const camera::Camera& camera, const Scene& scene, HighlightSearch& search,
+                   V2i frame_px) {
+    const V2i cells = frame_px / kCell_px;
+    SeenCells out;
+    for (int j = 0; j < cells.y; ++j)
+        for (int i = 0; i < cells.x; ++i) {
+            const camera::FilmCell cell{V2f(V2i(i, j)) / V2f(cells),
+                                        V2f(V2i(i + 1, j + 1)) / V2f(cells)};
+            out.bundles.push_back(camera::bundle_of(
+                camera, cell, number_of(PrepassSeed::Highlights), {i, j}, kRaysOfCell));
+            for (const Ray& ray : out.bundles.back().rays)
+                out.look(search, ray, out.bundles.size() - 1);
+        }
+    for (const camera::RayBundle& bundle : out.bundles)
+        out.eye += bundle.origin / static_cast<float>(out.bundles.size());
+    // Small objects are passed by.
+    size_t left = out.bundles.size() * kObjectsOfCell;
+    Middles middles(scene);
+    const size_t step = scene.instances.size() / kMostTried + 1;
+    for (size_t n = 0; n < scene.instances.size() && left > 0; n += step) {
+        const Instance& instance = scene.instances[n];
+        const auto number = static_cast<uint32_t>(n);
+        if (!may_be_polished(scene.materials[scene.meshes[instance.mesh].material]) ||
+            out.starts.contains(number))
+            continue;
+        const V3f middle = middles.of(instance);
+        const auto cell = out.towards(middle);
+        if (!cell) continue;
+        const V3f eye = out.bundles[*cell].rays.front().origin;
+        out.look(search, {eye, unit(middle - eye)}, *cell, number);
+        --left;
+    }
+    return out;
+}
+
 }  // namespace
 
 std::vector<SmallFeature> highlights(const camera::Camera& camera, const Scene& scene,
@@ -399,25 +380,30 @@ std::vector<SmallFeature> highlights(const camera::Camera& camera, const Scene& 
     if (lamps.empty() || frame_px.x < kCell_px || frame_px.y < kCell_px) return {};
     const double pixels = double(frame_px.x) * double(frame_px.y);
     HighlightSearch first(scene, bvh, INT64_MAX);
-    std::vector<std::vector<V3f>> eyes;
-    const std::vector<Start> starts = starts_of(camera, first, frame_px, eyes);
+    const SeenCells seen = cells_of(camera, scene, first, frame_px);
     HighlightSearch search(scene, bvh, static_cast<int64_t>(kSearchRays * pixels));
-    std::map<std::pair<uint32_t, size_t>, int> failures;  // by object and lamp
+    auto more_rays = static_cast<int64_t>(kMoreRays * pixels);
+    std::map<std::tuple<uint32_t, size_t, Way>, int> failures;  // by object, lamp and way
     std::vector<SmallFeature> out;
-    for (const Start& start : starts)
+    for (const Start& start : in_turns(seen.starts))
         for (size_t l = 0; l < lamps.size(); ++l) {
             const Source& lamp = lamps[l];
             if (!search.may_go_on() || out.size() == kMostFound) return out;
-            int& failed = failures[{start.instance, l}];
-            if (failed > kMostFailures) continue;
-            const auto feature = image_from(search, start, eyes[start.cell], lamp);
+            int& failed = failures[{start.instance, l, start.way}];
+            if (failed > kMostFailures || (start.way == Way::Through && !lamp.has_size())) continue;
+            const auto feature = image_from(search, start, seen.bundles[start.cell].rays, lamp);
             const auto same = [&](const SmallFeature& other) {
                 return is_same(other, *feature, start.eye);
             };
-            if (!feature || std::any_of(out.begin(), out.end(), same))
+            if (!feature || std::any_of(out.begin(), out.end(), same)) {
                 ++failed;
-            else
-                out.push_back(*feature);
+                continue;
+            }
+            out.push_back(*feature);
+            // Where there is something to find, the search goes on.
+            const int64_t more = std::min(more_rays, kRaysOfImage);
+            search.allow(more);
+            more_rays -= more;
         }
     return out;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Highlights: virtual images of lamps in polished surfaces.
+// Highlights: virtual images of lamps in polished surfaces, and images of lamps behind clear glass.
 #pragma once
 
 #include <span>
@@ -12,14 +12,16 @@
 
 namespace petzval::integrator {
 
-/// Images of lamps in polished surfaces that a camera sees, as lamps at the places where they seem
-/// to be: at most 256, and none in a frame narrower than a cell of 16 pixels. Lamps are taken from
-/// the things, lights without size from the scene.
+/// Images of lamps in polished surfaces and behind clear glass that a camera sees, as lamps at the
+/// places where they seem to be: at most 1,024, and none in a frame narrower than a cell of 16
+/// pixels. Lamps are taken from the things, lights without size from the scene.
 ///
-/// A few camera rays of each cell of the frame find polished surfaces. From there Newton's method
-/// looks for the point whose normal lies half-way between the directions to the lens and to the
-/// lamp. The same for other points of the lens: the image is where the rays seem to meet. At most
-/// an eighth of a ray is cast for a pixel. A pure function of the arguments.
+/// A few camera rays of each cell of the frame find polished surfaces, and a ray to the middle of
+/// objects that they pass by. From there Newton's method looks for the point whose normal lies
+/// half-way between the directions to the lens and to the lamp, or for the ray that glass bends to
+/// the lamp. The same for other points of the lens. At most a seventh of a ray is cast for a pixel,
+/// and half of one more where images are found; one that glass bends counts as several in the
+/// search, and as one before it. A pure function of the arguments.
 [[nodiscard]] std::vector<SmallFeature> highlights(const camera::Camera&, const Scene&, const Bvh&,
                                                    V2i frame_px,
                                                    std::span<const SmallFeature> features);

@@ -13,7 +13,10 @@ namespace petzval::integrator {
 namespace {
 
 /// Samples of a cell, rays to all of its targets, and to one of them.
-constexpr uint32_t kOrdinary = 8, kSent = 24, kMostSent = 12;
+constexpr uint32_t kOrdinary = 8, kSent = 48, kMostSent = 12;
+/// Rays to an image, over all cells: surfaces send few of them on to the lamp. And of all images
+/// together for a pixel.
+constexpr double kSentToImage = 96, kMostToImages = 1. / 8;
 /// Pixels of a cell for each ordinary sample, of which there are at least so many.
 constexpr uint32_t kPixelsPerSample = 32, kFewest = 2;
 /// Ratio of the frame's efforts that is worth it. Few samples of a cell know them badly, and what
@@ -57,7 +60,7 @@ struct Found {
 
 struct CellFound {
     Found ordinary;
-    std::vector<Found> sent;
+    std::vector<Found> sent;  ///< to each target
 };
 
 class CellPilot {
@@ -123,36 +126,86 @@ class CellPilot {
     Filter filter_{FilterKind::Box, 0.5f};
 };
 
-/// Number of a target in another list; its size where it is not there.
-size_t place_in(const std::vector<camera::ListedTarget>& list, const camera::ListedTarget& target) {
-    const auto same = [&](const camera::ListedTarget& other) {
-        return other.number == target.number;
-    };
-    return static_cast<size_t>(std::find_if(list.begin(), list.end(), same) - list.begin());
+/// Part of a cell that may see a target.
+camera::FilmCell seen_part(const camera::ListedTarget& target, const camera::FilmCell& cell) {
+    return target.seen_from.within(cell);
+}
+double seen_share(const camera::ListedTarget& target, const camera::FilmCell& cell) {
+    return double(seen_part(target, cell).area() / cell.area());
 }
 
-/// What is found in a cell and in those beside it: a few rays of one miss what a part of it sees.
-CellFound with_neighbours(const camera::TargetGrid& grid, const std::vector<CellFound>& cells,
-                          int i, int j) {
+/// Rays of the pilot that are sent to targets.
+class RaysToTargets {
+  public:
+    RaysToTargets(const camera::TargetGrid& grid, V2i frame_px)
+        : grid_(grid), shares_(grid.targets.size()) {
+        const auto images = static_cast<double>(
+            std::count_if(grid.targets.begin(), grid.targets.end(),
+                          [](const camera::Target& t) { return t.image.has_value(); }));
+        of_image_ = std::min(kSentToImage, kMostToImages * double(frame_px.x) * double(frame_px.y) /
+                                               std::max(1., images));
+        size_t n = 0;
+        for (int j = 0; j < grid.cells.y; ++j)
+            for (int i = 0; i < grid.cells.x; ++i)
+                for (const camera::ListedTarget& target : grid.lists[n++].targets)
+                    shares_[target.number] += seen_share(target, grid.cell(i, j, frame_px));
+    }
+    /// Number of them from a cell; share: of the cell, that may see the target.
+    [[nodiscard]] uint32_t from(const camera::TargetCell& cell, const camera::ListedTarget& target,
+                                double share) const {
+        const auto targets = static_cast<uint32_t>(cell.targets.size());
+        const uint32_t usual = std::clamp(kSent / targets, 1u, kMostSent);
+        if (!grid_.targets[target.number].image) return usual;
+        const double of_cell = of_image_ * share / shares_[target.number];
+        return std::max(usual, static_cast<uint32_t>(std::ceil(of_cell)));
+    }
+
+  private:
+    const camera::TargetGrid& grid_;
+    std::vector<double> shares_;  ///< sums over the cells
+    double of_image_;
+};
+
+/// What all cells find at a target: a few rays of one miss what a part of it sees, and the picture
+/// of a target is about even.
+class FoundAtTargets {
+  public:
+    explicit FoundAtTargets(size_t targets) : all_(targets) {}
+
+    /// share: of the cell's film points, those that may see it.
+    void add(const camera::ListedTarget& target, const Found& found, double share) {
+        all_[target.number].found.add(found);
+        all_[target.number].share += share;
+    }
+    [[nodiscard]] Found in_cell(const camera::ListedTarget& target, double share) const {
+        Found out = all_[target.number].found;
+        out.scale(share > 0 ? share / all_[target.number].share : 0);
+        return out;
+    }
+
+  private:
+    struct Sum {
+        Found found;
+        double share = 0;
+    };
+    std::vector<Sum> all_;
+};
+
+/// What ordinary samples find in a cell and in those beside it, and rays to targets in all.
+CellFound pooled(const camera::TargetGrid& grid, const std::vector<Found>& ordinary,
+                 const FoundAtTargets& targets, V2i frame_px, int i, int j) {
     const auto index = [&](int x, int y) { return static_cast<size_t>(y * grid.cells.x + x); };
     const std::vector<camera::ListedTarget>& list = grid.lists[index(i, j)].targets;
-    CellFound out{{}, std::vector<Found>(list.size())};
-    std::vector<int> counts(list.size());
+    CellFound out;
     int count = 0;
     for (int y = std::max(j - 1, 0); y <= std::min(j + 1, grid.cells.y - 1); ++y)
         for (int x = std::max(i - 1, 0); x <= std::min(i + 1, grid.cells.x - 1); ++x) {
-            const CellFound& cell = cells[index(x, y)];
-            out.ordinary.add(cell.ordinary);
+            out.ordinary.add(ordinary[index(x, y)]);
             ++count;
-            for (size_t k = 0; k < list.size(); ++k) {
-                const size_t there = place_in(grid.lists[index(x, y)].targets, list[k]);
-                if (there == cell.sent.size()) continue;
-                out.sent[k].add(cell.sent[there]);
-                ++counts[k];
-            }
         }
     out.ordinary.scale(1. / count);
-    for (size_t k = 0; k < list.size(); ++k) out.sent[k].scale(1. / counts[k]);
+    for (const camera::ListedTarget& target : list)
+        out.sent.push_back(targets.in_cell(target, seen_share(target, grid.cell(i, j, frame_px))));
     return out;
 }
 
@@ -226,7 +279,7 @@ CellChoice choice_of(const camera::TargetCell& cell, const camera::FilmCell& par
                       double(places.size());
         }
         // More rays lower what they bring to the variance, and cost more.
-        for (uint32_t rays = 1; rays <= camera::TargetCell::kMostRays; ++rays)
+        for (uint32_t rays = 1; rays <= camera::TargetCell::kMostRays; rays *= 2)
             out.efforts.push_back({std::sqrt((std::max(0., rest) + spread / rays) * scale),
                                    usual + rays * cost, rays, targets_taken});
     }
@@ -278,25 +331,26 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
     const auto cell_px =
         static_cast<uint32_t>(frame_px.x / all->cells.x * (frame_px.y / all->cells.y));
     const uint32_t ordinary = std::clamp(cell_px / kPixelsPerSample, kFewest, kOrdinary);
-    std::vector<CellFound> found;
+    std::vector<Found> found;
+    FoundAtTargets at_targets(all->targets.size());
+    const RaysToTargets to_targets(*all, frame_px);
     double mean = 0;
     for (int j = 0; j < all->cells.y; ++j)
         for (int i = 0; i < all->cells.x; ++i) {
             const camera::TargetCell& cell = all->lists[found.size()];
             const camera::FilmCell part = all->cell(i, j, frame_px);
-            CellFound& here = found.emplace_back();
-            here.ordinary = pilot.samples({i, j}, part, ordinary, nullptr);
-            mean += here.ordinary.counted;
-            const auto targets = static_cast<uint32_t>(cell.targets.size());
-            const uint32_t sent = std::clamp(kSent / std::max(1u, targets), 1u, kMostSent);
+            found.push_back(pilot.samples({i, j}, part, ordinary, nullptr));
+            mean += found.back().counted;
             for (const camera::ListedTarget& target : cell.targets) {
                 camera::TargetCell alone{cell.map, {target}};
                 alone.targets[0].chance = 1;
-                const camera::FilmCell seen = target.seen_from.within(part);
-                Found found_there = pilot.samples({i, j}, seen, sent, &alone);
-                found_there.scale(double(seen.area() / part.area()));
-                here.sent.push_back(found_there);
-                mean += here.sent.back().counted;
+                const double share = seen_share(target, part);
+                if (!(share > 0)) continue;
+                Found found_there = pilot.samples({i, j}, seen_part(target, part),
+                                                  to_targets.from(cell, target, share), &alone);
+                found_there.scale(share);
+                at_targets.add(target, found_there, share);
+                mean += found_there.counted;
             }
         }
     const double dark = kDark * mean / static_cast<double>(found.size());
@@ -304,7 +358,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
     for (int j = 0; j < all->cells.y; ++j)
         for (int i = 0; i < all->cells.x; ++i)
             cells.push_back(choice_of(all->lists[cells.size()], all->cell(i, j, frame_px),
-                                      with_neighbours(*all, found, i, j), dark));
+                                      pooled(*all, found, at_targets, frame_px, i, j), dark));
     const Effort without = sum_of(cells);
     take_best(cells);
     const Effort with = sum_of(cells);

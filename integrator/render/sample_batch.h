@@ -76,8 +76,13 @@ class SampleBatch {
     /// Light that one of the camera's rays brings to a sample.
     [[nodiscard]] f4 light_along(const camera::CameraPath& path, size_t i, const PathStart& start,
                                  FilmSample& out) {
+        const Sampler& sampler = points_[i].sampler;
         return path.weight * path.mis_weight *
-               tracer_.radiance(start, bands_[i], points_[i].sampler, out, stats_);
+               tracer_.radiance(start, bands_[i],
+                                path.target_rays == 1
+                                    ? sampler
+                                    : sampler.branch(path.target_rays, path.target_ray),
+                                out, stats_);
     }
 
     const Tracer& tracer_;

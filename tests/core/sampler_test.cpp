@@ -40,11 +40,12 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Stratified,
 TEST_P(Stratified, EveryBlockIsANet) {
     for (int m = 1; m <= 8; ++m)
         for (uint32_t block = 0; block < 4; ++block)
-            for (uint32_t vertex = 0; vertex < 3; ++vertex) {
+            for (const auto& [dim, vertex] :
+                 {std::pair{Dim::Bsdf, 0u}, {Dim::Bsdf, 1u}, {Dim::Bsdf, 2u}, {Dim::Lens, 0u}}) {
                 std::vector<V2f> points;
                 for (uint32_t i = 0; i < 1u << m; ++i)
                     points.push_back(
-                        Sampler(GetParam(), 7, {31, 5, (block << m) + i}).get2(Dim::Bsdf, vertex));
+                        Sampler(GetParam(), 7, {31, 5, (block << m) + i}).get2(dim, vertex));
                 for (int a = 0; a <= m; ++a) {
                     std::set<uint32_t> cells;
                     for (const V2f& p : points)
@@ -54,6 +55,38 @@ TEST_P(Stratified, EveryBlockIsANet) {
                         << "m " << m << " block " << block << " split " << a;
                 }
             }
+}
+
+// Niederreiter 1987: a (0, 4)-sequence in base 4. Each block of 4^m points has one in each box
+// whose sides are powers of a quarter and whose volume is 4^-m.
+TEST_P(Stratified, FilmAndLensAreANetTogether) {
+    for (uint32_t m = 1; m <= 4; ++m) {
+        const uint32_t n = 1u << (2 * m);
+        for (const uint32_t block : {0u, 1u, 7u}) {
+            std::vector<std::array<float, 4>> points;
+            for (uint32_t i = 0; i < n; ++i) {
+                const Sampler sampler(GetParam(), 3, {5, 9, block * n + i});
+                const V2f film = sampler.get2(Dim::Film), lens = sampler.get2(Dim::Lens);
+                points.push_back({film.x, film.y, lens.x, lens.y});
+            }
+            for (uint32_t a = 0; a <= m; ++a)
+                for (uint32_t b = 0; a + b <= m; ++b)
+                    for (uint32_t c = 0; a + b + c <= m; ++c) {
+                        const std::array<uint32_t, 4> sides{a, b, c, m - a - b - c};
+                        std::set<uint32_t> boxes;
+                        for (const auto& p : points) {
+                            uint32_t box = 0;
+                            for (size_t k = 0; k < 4; ++k) {
+                                const uint32_t parts = 1u << (2 * sides[k]);
+                                box = box * parts +
+                                      static_cast<uint32_t>(p[k] * static_cast<float>(parts));
+                            }
+                            boxes.insert(box);
+                        }
+                        EXPECT_EQ(boxes.size(), n) << m << ": " << a << ' ' << b << ' ' << c;
+                    }
+        }
+    }
 }
 
 TEST_P(Stratified, OneDimensionHasOnePointInEachInterval) {

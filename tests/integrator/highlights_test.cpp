@@ -124,9 +124,49 @@ TEST(Highlights, OfTinyLampsSendWhatTheirSizeSays) {
     const auto sent = [](float reach_m) {
         const auto found = seen_in_a_ball(mirror(), {lamp_at(V3f(0.6f, 0.5f, -0.5f), reach_m)});
         EXPECT_EQ(found.size(), 1u);
-        return found.empty() ? 0. : found[0].radiance * sqr(double(found[0].reach_m));
+        return found.empty() ? 0. : found[0].radiance * found[0].area_m2;
     };
     EXPECT_NEAR(sent(0.002f) / sent(0.0005f), 16, 2);
+}
+
+// A block of glass shifts what lies behind it by its thickness times 1 - 1 / n.
+TEST(Highlights, OfALampBehindABlockOfGlass) {
+    World world;
+    place(world.scene, box(V3f(-1, -1, -1.3f), V3f(1, 1, -1)), glass_material(1.5f));
+    const V3f lamp(0.1f, 0.05f, -3);
+    const auto found = seen_in(world, {lamp_at(lamp, 0.003f)});
+    const auto shifted = std::find_if(found.begin(), found.end(), [&](const SmallFeature& f) {
+        return (f.centre - (lamp + V3f(0, 0, 0.1f))).length() < 0.01f;
+    });
+    ASSERT_NE(shifted, found.end()) << found.size();
+    EXPECT_LT(shifted->reach_m, 0.02f);
+}
+
+// In a ball, aslant, rays of the image meet in no point. Those that the image says are met, from
+// any point of the lens, are mirrored to the lamp by a sphere.
+TEST(Highlights, OfABallAreAstigmatic) {
+    const V3f lamp = unit(V3f(0.3f, 1, -0.4f)), middle(0, 0, -1);
+    const float reach = 0.005f;
+    const auto found = seen_in_a_ball(mirror(), {lamp_at(lamp, reach, true)});
+    ASSERT_EQ(found.size(), 1u);
+    ASSERT_TRUE(found[0].image);
+    const AstigmaticImage& image = *found[0].image;
+    EXPECT_GT(image.passes_m.most(), 0.1f * kRadius_m);
+    for (int i = 0; i < 16; ++i) {
+        const float angle = 0.4f * float(i), off_m = 0.019f * float(i % 4 + 1) / 4;
+        const V3f eye(off_m * std::cos(angle), off_m * std::sin(angle), 0);
+        V3f seen = unit(found[0].centre - eye);
+        for (int step = 0; step < 4; ++step) {
+            const V2f by = image.passes_m(V2f(seen.dot(image.x), seen.dot(image.y)));
+            seen = unit(found[0].centre + by.x * image.x + by.y * image.y - eye);
+        }
+        const float along = (middle - eye).dot(seen);
+        const float to_sphere =
+            along - std::sqrt(sqr(kRadius_m) - ((middle - eye).length2() - along * along));
+        const V3f normal = unit(eye + to_sphere * seen - middle);
+        const V3f mirrored = seen - 2 * seen.dot(normal) * normal;
+        EXPECT_LT((mirrored - lamp).length(), reach) << i;
+    }
 }
 
 // One behind the other, as the lens sees them.

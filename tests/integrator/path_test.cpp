@@ -320,5 +320,41 @@ TEST(Path, WhatGoesOnByChanceCountsMore) {
     EXPECT_LT(some.error, 0.02 * all.value);
 }
 
+// Rays to targets are mirrored by solid glass more often, and count less: what it mirrors and what
+// it lets through keep their light, and what it mirrors is known better.
+TEST(Path, RaysToTargetsAreMirroredMoreOften) {
+    for (const bool in_front : {true, false}) {
+        test::World world;
+        // Nothing comes back from within where the lamp is in front.
+        test::place(world.scene, test::sphere(V3f(0.f), 1.f, 64, true),
+                    test::glass_material(1.5f, in_front ? 1e-9f : 1.f));
+        const V3f low(-9, -9, in_front ? 6.f : -6.f);
+        test::place(world.scene, test::quad(low, V3f(18, 0, 0), V3f(0, 18, 0)),
+                    test::emitter_material(1.f, 0.f));
+        world.scene.materials.back().double_sided = true;
+        world.finish();
+        const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
+        PathStats stats;
+        const auto mean = [&](float rest) {
+            test::Moments sum;
+            for (uint32_t i = 0; i < 60000; ++i) {
+                const Sampler sampler(SamplerKind::Independent, 3, {1, 1, i});
+                FilmSample out;
+                const V2f at = sampler.get2(Dim::Film) - V2f(0.5f);
+                const Ray ray{V3f(at.x, at.y, 4), V3f(0, 0, -1)};
+                sum.add(double(tracer.radiance({ray, m4{-1, -1, -1, -1}, true, rest}, Bands::rgb(),
+                                               sampler, out, stats)[0]));
+            }
+            return test::Mean(sum);
+        };
+        const test::Mean ordinary = mean(1), to_target = mean(0.5f);
+        EXPECT_GT(ordinary.value, in_front ? 0.03 : 0.8);
+        EXPECT_TRUE(test::agrees(ordinary - to_target, 0)) << ordinary << " and " << to_target;
+        if (in_front) {
+            EXPECT_LT(to_target.error, 0.7 * ordinary.error);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace petzval::integrator

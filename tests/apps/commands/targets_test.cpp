@@ -19,7 +19,7 @@ class CliTargets : public CliSpectral {
     }
     [[nodiscard]] static Words traced(Words more) {
         Words words = {"--lens",  "takumar-50mm-f1.2",
-                       "--focus", "0.5m",
+                       "--focus", "0.4m",
                        "--fstop", "1.2",
                        "--size",  "64x42",
                        "--spp",   "5"};

@@ -18,8 +18,9 @@ constexpr int64_t kPixelsOfDisc = 256;
 /// The density of rays at a lamp is that of this many nearest ones.
 constexpr size_t kNearest = 16;
 
-/// Share of the light on its disc from which on a lamp decides how bright that is.
-constexpr double kMostOfTheLight = 0.5;
+/// Share of the light on its disc from which on a lamp decides how bright that is: half of it, for
+/// a lamp whose area and share of the rays are known to a factor of two.
+constexpr double kMostOfTheLight = 0.25;
 
 /// Times as often as ordinary rays those that are sent to a lamp meet it where they decide.
 constexpr double kDecisive = 4;
@@ -30,7 +31,8 @@ constexpr double kFilled = 0.1;
 /// Ray of a random film point in a region; nothing where the lens lets none through.
 std::optional<Ray> ray_in(const RenderSetup& setup, V2i size_px, const camera::FilmRegion& region,
                           uint32_t i) {
-    const Sampler sampler(SamplerKind::Owen, 1, {0, 0, i});
+    // The distances of the nearest tell a density where rays know nothing of each other.
+    const Sampler sampler(SamplerKind::Independent, 1, {0, 0, i});
     const V2f within = sampler.get2(Dim::Film);
     const auto area = static_cast<double>(region.area_px());
     const auto [x, y] =

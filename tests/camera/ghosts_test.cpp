@@ -80,7 +80,7 @@ TEST(Ghosts, HaveTheLightOfAWalkThroughTheLensPairByPair) {
 TEST(GhostCamera, OfALampKeepTheirMeanWithRegionsAndWithout) {
     const auto camera = ghostly("takumar-50mm-f1.2", Coating::MgF2);
     const SmallFeature sun = sun_at(15, 0.12f);
-    constexpr uint32_t kCount = 300000;
+    constexpr uint32_t kCount = 350000;
     const GhostOptics optics(camera);
     GhostRegions regions(optics, {&sun, 1});
     ASSERT_TRUE(regions.serve(V2f(0.f)));

@@ -136,7 +136,7 @@ TEST(StopDraw, SplitLanesHaveTheMeanOfEachAlone) {
         Bands bands = test::four_wavelengths();
         bands.nm = f4{410, 490, 560, 690};
         d4 sum{};
-        constexpr uint32_t kDraws = 1 << 18;
+        constexpr uint32_t kDraws = 1 << 19;
         for (uint32_t i = 0; i < kDraws; ++i) {
             bands.hero = int(i % 4);
             const V2f u = Sampler(SamplerKind::Owen, 1, {bands.hero, 0, i / 4}).get2(Dim::Lens);

@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"first_light.glb", {{"seed", {"3"}}}},
         Case{"first_light.glb", {{"transparent", {"on"}}, {"clamp", {"0.5"}}, {"fstop", {"2"}}}},
         Case{
-            "ornaments.glb", {{"lens", {"takumar-50mm-f1.2"}}, {"focus", {"0.5"}}}, {64, 42}, true},
+            "ornaments.glb", {{"lens", {"takumar-50mm-f1.2"}}, {"focus", {"0.4"}}}, {64, 42}, true},
         Case{"gem.glb", {{"spectral", {"wavelengths"}}}},
         Case{"gem.glb", {{"bins", {"400:700:100"}}}},
         Case{"wheels.glb", {{"at", {"0.1s"}}, {"shutter", {"180deg"}}}},

@@ -20,6 +20,7 @@ import resource
 import shlex
 import subprocess
 import tempfile
+import time
 
 import numpy
 import OpenImageIO
@@ -29,7 +30,9 @@ REFERENCES, CELL_PX, MOST = 8, 16, 16384
 
 def render(program, arguments, seed, folder, more, status=(0,)):
     """Pixels, CPU seconds, what the file of statistics says, and the exit status."""
-    picture, stats = os.path.join(folder, "picture.exr"), os.path.join(folder, "stats.json")
+    # A name is read once: a second picture of the same second would be the first.
+    picture = os.path.join(folder, "%d.exr" % time.monotonic_ns())
+    stats = os.path.join(folder, "stats.json")
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([program, "render", *arguments, "--seed", str(seed), *more, "-o", picture, "--stats", stats, "--quiet"],
                           stderr=subprocess.PIPE, text=True)

@@ -25,7 +25,8 @@ SEEDS, AROUND = 5, 48
 
 
 def render(program, arguments, targets, seed, folder):
-    picture = os.path.join(folder, "picture.exr")
+    # A name is read once: a second picture of the same second would be the first.
+    picture = os.path.join(folder, "%s %d.exr" % (targets, seed))
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run([program, "render", *arguments, "--seed", str(seed), "--method", "targets=" + targets, "-o", picture, "--quiet"],
                    check=True)

@@ -49,9 +49,7 @@ FilmMotion::FilmMotion(const std::array<StopMap::Rays, 2>& by_film, const Listed
 }
 
 V2f FilmMotion::film_for(V2f landing) const {
-    const float det = right.x * down.y - right.y * down.x;
-    return V2f(down.y * landing.x - down.x * landing.y, right.x * landing.y - right.y * landing.x) /
-           det;
+    return Linear2f{right, down}.inverse()(landing);
 }
 
 Landings landings(const LandingMap& map, f8 s, f8 t) {

@@ -74,7 +74,7 @@ struct FilmMotion {
     /// Change of the film point that changes the landing by so much.
     [[nodiscard]] V2f film_for(V2f landing) const;
     /// Area on the target for the whole frame, radii^2.
-    [[nodiscard]] float area() const { return std::fabs(right.x * down.y - right.y * down.x); }
+    [[nodiscard]] float area() const { return std::fabs(Linear2f{right, down}.determinant()); }
 };
 
 /// Ellipses and rectangles on the disc of a map that cover all points whose rays pass a target, as

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/scene/motion.h"
+#include "core/traversal/bvh_filters.h"
 #include "core/traversal/bvh_impl.h"
 
 namespace petzval {

@@ -12,13 +12,6 @@
 
 namespace petzval {
 
-/// Embree's filter callbacks: which hits rays pass (bvh.cpp). A packet has one ray, as only the
-/// single-ray calls are used.
-namespace bvh_filters {
-using Filter = void(const RTCFilterFunctionNArguments*);
-Filter draw, draw_mapped, draw_weighed, list_weighed, pass_pane;
-}  // namespace bvh_filters
-
 struct Bvh::Impl {
     const Scene& scene;
     RTCDevice device = nullptr;

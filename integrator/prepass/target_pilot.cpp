@@ -126,12 +126,9 @@ class CellPilot {
     Filter filter_{FilterKind::Box, 0.5f};
 };
 
-/// Part of a cell that may see a target.
-camera::FilmCell seen_part(const camera::ListedTarget& target, const camera::FilmCell& cell) {
-    return target.seen_from.within(cell);
-}
+/// Share of a cell that may see a target.
 double seen_share(const camera::ListedTarget& target, const camera::FilmCell& cell) {
-    return double(seen_part(target, cell).area() / cell.area());
+    return double(target.seen_from.within(cell).area() / cell.area());
 }
 
 /// Rays of the pilot that are sent to targets.
@@ -346,7 +343,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
                 alone.targets[0].chance = 1;
                 const double share = seen_share(target, part);
                 if (!(share > 0)) continue;
-                Found found_there = pilot.samples({i, j}, seen_part(target, part),
+                Found found_there = pilot.samples({i, j}, target.seen_from.within(part),
                                                   to_targets.from(cell, target, share), &alone);
                 found_there.scale(share);
                 at_targets.add(target, found_there, share);

@@ -296,24 +296,32 @@ TEST(Path, CountsLampsThatMirrorsShow) {
     }
 }
 
+/// Mean light of rays by a sampler, which go on by chance from where light is scattered far and
+/// wide.
+template <class F>
+test::Mean light_that_goes_on(const test::World& world, float chance, uint32_t count,
+                              const F& ray_of) {
+    const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
+    PathStats stats;
+    test::Moments sum;
+    for (uint32_t i = 0; i < count; ++i) {
+        const Sampler sampler(SamplerKind::Independent, 3, {1, 1, i});
+        FilmSample out;
+        const Ray ray = ray_of(sampler.get2(Dim::Film));
+        sum.add(double(tracer.radiance({ray, m4{-1, -1, -1, -1}, true, chance}, Bands::rgb(),
+                                       sampler, out, stats)[0]));
+    }
+    return sum;
+}
+
 // Paths that go on by chance from where light is scattered far and wide count as much more.
 TEST(Path, WhatGoesOnByChanceCountsMore) {
     test::World world;
     test::place(world.scene, test::sphere(V3f(0.f), 1.f, 16, false), test::diffuse_material(0.8f));
     test::place(world.scene, test::box(V3f(-5), V3f(5)), test::emitter_material(1.f, 0.5f));
     world.finish();
-    const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
-    PathStats stats;
     const auto mean = [&](float rest) {
-        test::Moments sum;
-        for (uint32_t i = 0; i < 20000; ++i) {
-            const Sampler sampler(SamplerKind::Independent, 3, {1, 1, i});
-            FilmSample out;
-            sum.add(double(tracer.radiance(
-                {test::bundle(sampler.get2(Dim::Film)), m4{-1, -1, -1, -1}, true, rest},
-                Bands::rgb(), sampler, out, stats)[0]));
-        }
-        return test::Mean(sum);
+        return light_that_goes_on(world, rest, 20000, [](V2f u) { return test::bundle(u); });
     };
     const test::Mean all = mean(1), some = mean(0.3f);
     EXPECT_TRUE(test::agrees(all - some, 0)) << all << " and " << some;
@@ -333,19 +341,10 @@ TEST(Path, RaysToTargetsAreMirroredMoreOften) {
                     test::emitter_material(1.f, 0.f));
         world.scene.materials.back().double_sided = true;
         world.finish();
-        const PathTracer tracer(world.scene, *world.bvh, *world.lights, PathOptions());
-        PathStats stats;
         const auto mean = [&](float rest) {
-            test::Moments sum;
-            for (uint32_t i = 0; i < 60000; ++i) {
-                const Sampler sampler(SamplerKind::Independent, 3, {1, 1, i});
-                FilmSample out;
-                const V2f at = sampler.get2(Dim::Film) - V2f(0.5f);
-                const Ray ray{V3f(at.x, at.y, 4), V3f(0, 0, -1)};
-                sum.add(double(tracer.radiance({ray, m4{-1, -1, -1, -1}, true, rest}, Bands::rgb(),
-                                               sampler, out, stats)[0]));
-            }
-            return test::Mean(sum);
+            return light_that_goes_on(world, rest, 60000, [](V2f u) {
+                return Ray{V3f(u.x - 0.5f, u.y - 0.5f, 4), V3f(0, 0, -1)};
+            });
         };
         const test::Mean ordinary = mean(1), to_target = mean(0.5f);
         EXPECT_GT(ordinary.value, in_front ? 0.03 : 0.8);

@@ -23,10 +23,7 @@ std::shared_ptr<const camera::GhostDraws> ghost_draws(const camera::GhostOptics&
     std::vector<SmallFeature> things = small_features_of(*prepared.scene);
     for (SmallFeature& thing : things)
         if (!shines_in(thing, optics.camera().pose(), *prepared.bvh)) thing.radiance *= kHidden;
-    const auto run = [&](size_t count, const std::function<void(size_t)>& task) {
-        next_step();
-        integrator::run_here(count, task);
-    };
+    const auto run = integrator::run_here(next_step);
     return std::make_shared<const camera::GhostDraws>(
         optics, camera::GhostRegions(optics, things, run), run);
 }

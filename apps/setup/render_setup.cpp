@@ -22,6 +22,7 @@
 #include "integrator/prepass/highlights.h"
 #include "integrator/prepass/light_pilot.h"
 #include "integrator/prepass/target_pilot.h"
+#include "integrator/render/executor.h"
 #include "io/base/error.h"
 #include "io/base/format.h"
 #include "io/base/printable.h"
@@ -35,7 +36,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Clusters of the lamps of a class of brightness that may be targets.
-constexpr size_t kMostTargets = 1024;
+constexpr size_t kMostTargets = 4096;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -215,13 +216,13 @@ std::shared_ptr<const camera::TargetGrid> targets_of(camera::TargetCamera& camer
                                                      std::vector<SmallFeature> features,
                                                      const std::function<void()>& next_step) {
     const Scene& scene = *prepared.scene;
+    const auto run = integrator::run_here(next_step);
     const std::vector<SmallFeature> images =
-        integrator::highlights(still, scene, *prepared.bvh, size_px, features);
+        integrator::highlights(still, scene, *prepared.bvh, size_px, features, run);
     features.insert(features.end(), images.begin(), images.end());
-    next_step();
-    camera.set_targets(camera::find_targets(camera, size_px, features, next_step));
-    next_step();
-    return integrator::targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px);
+    camera.set_targets(camera::find_targets(camera, size_px, features, run));
+    return integrator::targets_that_pay(camera, scene, *prepared.bvh, *prepared.lights, size_px,
+                                        run);
 }
 
 /// A camera that the shutter of a view moves; the same where nothing moves.

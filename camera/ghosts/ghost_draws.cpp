@@ -17,7 +17,7 @@ constexpr float kByLamps = 0.4f;
 
 }  // namespace
 
-GhostDraws::GhostDraws(GhostOptics optics, GhostRegions regions, const RunGhostTasks& run)
+GhostDraws::GhostDraws(GhostOptics optics, GhostRegions regions, const RunTasks& run)
     : optics_(std::move(optics)), pupils_(optics_, run), regions_(std::move(regions)) {}
 
 bool GhostDraws::are_of(const GhostOptics& other) const {

@@ -16,7 +16,7 @@ namespace petzval::camera {
 /// pairs that are bright in an even scene or by the lamps; and through the regions of lamps.
 class GhostDraws {
   public:
-    GhostDraws(GhostOptics, GhostRegions, const RunGhostTasks& = one_by_one);
+    GhostDraws(GhostOptics, GhostRegions, const RunTasks& = one_by_one);
     GhostDraws(const GhostDraws&) = delete;
     GhostDraws& operator=(const GhostDraws&) = delete;
 

@@ -26,7 +26,7 @@ bool is_after(const GhostRegion& a, const GhostRegion& b) {
 
 }  // namespace
 
-GhostPupils::GhostPupils(const GhostOptics& optics, const RunGhostTasks& run)
+GhostPupils::GhostPupils(const GhostOptics& optics, const RunTasks& run)
     : optics_(optics),
       line_d_(optics.lens().exact_indices(splat8(float(kLineD_nm)))),
       regions_(optics.pairs().size() * kCells),

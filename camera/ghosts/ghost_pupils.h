@@ -6,7 +6,7 @@
 
 #include "camera/ghosts/ghost_optics.h"
 #include "camera/ghosts/ghost_region.h"
-#include "camera/ghosts/ghost_tasks.h"
+#include "camera/run_tasks.h"
 
 namespace petzval::camera {
 
@@ -14,7 +14,7 @@ class GhostPupils {
   public:
     /// The optics must outlive it. For each pair, rays with a fixed seed tell where those that pass
     /// the iris cross the last surface, and how much light they bring.
-    explicit GhostPupils(const GhostOptics&, const RunGhostTasks& = one_by_one);
+    explicit GhostPupils(const GhostOptics&, const RunTasks& = one_by_one);
 
     /// Drawn pair, by its light; pick in [0, 1). And the chance of each.
     [[nodiscard]] uint32_t pair(float pick) const;

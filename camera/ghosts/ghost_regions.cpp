@@ -45,7 +45,7 @@ std::optional<GhostLamp> lamp_of(const SmallFeature& f, const LensCamera& camera
 }  // namespace
 
 GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeature> things,
-                           const RunGhostTasks& run) {
+                           const RunTasks& run) {
     std::vector<GhostLamp> lamps;
     for (const SmallFeature& thing : things)
         if (thing.is_lamp())
@@ -69,7 +69,7 @@ GhostRegions::GhostRegions(const GhostOptics& optics, std::span<const SmallFeatu
 }
 
 void GhostRegions::search(const GhostOptics& optics, std::span<const GhostLamp> lamps,
-                          const RunGhostTasks& run) {
+                          const RunTasks& run) {
     const GhostSearch search(optics);
     // The pairs that reflect most come first, as the search must end.
     std::vector<uint32_t> pairs(optics.pairs().size());
@@ -112,7 +112,7 @@ void GhostRegions::each_cell(const GhostRegion& r, const F& f) const {
               share(low.x, high.x, x) * share(low.y, high.y, y));
 }
 
-void GhostRegions::list_regions(const RunGhostTasks& run) {
+void GhostRegions::list_regions(const RunTasks& run) {
     struct Member {
         uint32_t region;
         float light;

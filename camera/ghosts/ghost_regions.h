@@ -10,7 +10,7 @@
 
 #include "camera/ghosts/ghost_optics.h"
 #include "camera/ghosts/ghost_region.h"
-#include "camera/ghosts/ghost_tasks.h"
+#include "camera/run_tasks.h"
 #include "core/light/small_features.h"
 
 namespace petzval::camera {
@@ -25,8 +25,7 @@ class GhostRegions {
     /// Regions of the lamps among some things, as a camera sees them whose film it is: of the
     /// brightest lamps, those that are small. A function of the arguments alone, whatever runs its
     /// parts; no ray is cast into the scene.
-    GhostRegions(const GhostOptics&, std::span<const SmallFeature>,
-                 const RunGhostTasks& = one_by_one);
+    GhostRegions(const GhostOptics&, std::span<const SmallFeature>, const RunTasks& = one_by_one);
 
     /// Whether there are regions for film points about this one.
     [[nodiscard]] bool serve(V2f film_mm) const { return !groups_at(film_mm).empty(); }
@@ -45,8 +44,8 @@ class GhostRegions {
         float up_to;          ///< share of the cell's light of this pair and those before
         uint32_t first, end;  ///< in members_
     };
-    void search(const GhostOptics&, std::span<const GhostLamp>, const RunGhostTasks&);
-    void list_regions(const RunGhostTasks&);
+    void search(const GhostOptics&, std::span<const GhostLamp>, const RunTasks&);
+    void list_regions(const RunTasks&);
     [[nodiscard]] std::span<const Group> groups_at(V2f film_mm) const;
     /// Group that a number in [0, 1) picks; it becomes one within the group.
     [[nodiscard]] static const Group& picked(std::span<const Group>, float& pick);

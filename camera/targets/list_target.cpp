@@ -70,28 +70,31 @@ FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_
     out.low.fill(INFINITY), out.high.fill(-INFINITY);
     out.beyond = kFilter_px / float(std::min(frame_px.x, frame_px.y));
     const auto by_film = map.rays_by_film(map.middle());
-    const auto add = [&](const StopMap::Rays& middle, V2f stop) {
+    std::array<StopMap::Rays, StopMap::kTried_nm.size()> rays;
+    std::transform(StopMap::kTried_nm.begin(), StopMap::kTried_nm.end(), rays.begin(),
+                   [&](float nm) { return map.rays(map.middle(), nm); });
+    const auto add = [&](V2f stop) {
         const FilmMotion by(by_film, target, stop);
-        const V2f film = map.middle() - by.film_for(landing(at(middle, stop), target));
         const float error = target.in_radii(map.error(StopMap::square(stop)));
         // The target's radius, and the reach of a filter.
         const std::array<V2f, 4> across{by.down, by.right, by.down - by.right, by.down + by.right};
-        const auto along = FilmOctagon::along(film);
-        for (size_t k = 0; k < 4; ++k) {
-            const float reach = (1 + error) * across[k].length() / by.area() +
-                                (k < 2 ? 1 : FilmOctagon::kRoot2) * out.beyond;
-            out.low[k] = std::min(out.low[k], along[k] - reach);
-            out.high[k] = std::max(out.high[k], along[k] + reach);
+        for (const StopMap::Rays& of_nm : rays) {
+            const V2f film = map.middle() - by.film_for(landing(at(of_nm, stop), target));
+            const auto along = FilmOctagon::along(film);
+            for (size_t k = 0; k < 4; ++k) {
+                const float reach = (1 + error) * across[k].length() / by.area() +
+                                    (k < 2 ? 1 : FilmOctagon::kRoot2) * out.beyond;
+                out.low[k] = std::min(out.low[k], along[k] - reach);
+                out.high[k] = std::max(out.high[k], along[k] + reach);
+            }
         }
     };
-    for (const float nm : StopMap::kTried_nm) {
-        const StopMap::Rays middle = map.rays(map.middle(), nm);
-        for (const float radius : {0.f, 0.5f, 0.8f, 1.f})
-            for (int i = 0; i < 16; ++i) {
-                const float angle = kPi / 8 * (float(i) + radius);
-                add(middle, V2f(std::cos(angle), std::sin(angle)) * radius);
-            }
-    }
+    add(V2f(0.f));
+    for (const float radius : {0.5f, 0.8f, 1.f})
+        for (int i = 0; i < 16; ++i) {
+            const float angle = kPi / 8 * (float(i) + radius);
+            add(V2f(std::cos(angle), std::sin(angle)) * radius);
+        }
     for (size_t k = 0; k < 4; ++k) {
         const float more = kMore * (out.high[k] - out.low[k]);
         out.low[k] -= more, out.high[k] += more;

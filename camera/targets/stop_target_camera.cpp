@@ -21,15 +21,15 @@ bool may_see(const ListedTarget& target, V2f film, const std::array<float, 4>& a
            (target.is_sharp || target.seen_from.contains_point(film));
 }
 
-/// Whether the map has the ray through a point of the stop near a target: other rays are neither
-/// sent nor asked for their density.
-bool is_near(const TargetView& view, const StopMap::Rays& rays, V2f stop_mm) {
-    const V2f stop = view.map->on_disc(stop_mm);
+/// Whether the ray that the map has for a point of the stop is near a target: other rays are
+/// neither sent nor asked for their density.
+bool is_near(const TargetView& view, const f4& ray, V2f stop) {
     const float reach = reach_at(*view.map, *view.target, stop);
-    return landing(at(rays, stop), *view.target).length2() <= reach * reach;
+    return landing(ray, *view.target).length2() <= reach * reach;
 }
 bool is_near(const TargetView& view, V2f stop_mm) {
-    return is_near(view, view.map->rays(view.film, view.nm), stop_mm);
+    const V2f stop = view.map->on_disc(stop_mm);
+    return is_near(view, at(view.map->rays(view.film, view.nm), stop), stop);
 }
 
 }  // namespace
@@ -76,11 +76,12 @@ float StopTargetCamera::density_to_targets(const StopCrossings& crossings, const
     float sum = 0;
     for (size_t k = 0; k < crossings.lanes; ++k) {
         const StopMap::Rays rays = cell.map->rays(point.film, crossings.nm[k]);
-        const V2f stop_mm = crossings.stop_mm[k];
+        const V2f stop_mm = crossings.stop_mm[k], stop = cell.map->on_disc(stop_mm);
+        const f4 ray = at(rays, stop);
         for (const ListedTarget& target : cell.targets) {
             if (!may_see(target, point.film, along)) continue;
             const TargetView view{cell.map.get(), &target, point.film, crossings.nm[k]};
-            if (!is_near(view, rays, stop_mm)) continue;
+            if (!is_near(view, ray, stop)) continue;
             // The region that a ray was drawn from need not be found again.
             const bool is_own =
                 aimed && aimed->target == &target && aimed->density >= 0 && crossings.lanes == 1;

@@ -12,14 +12,14 @@ namespace petzval::camera {
 namespace {
 
 /// Side of a cell, so that a pilot of each stays below a quarter of a sample; in small frames it is
-/// less, as a map of the lens is good for a small part of the film.
-constexpr int kCell_px = 16, kLeastCell_px = 2, kFewestCells = 20;
-/// Things of a cell that are tried, brightest first, and that may be found.
-constexpr size_t kMostTried = 256, kMostFound = 64;
+/// less, as a map of the lens is good for a small part of the film. In large ones more would find
+/// nothing more, and a search takes as long as a few samples of all pixels.
+constexpr int kCell_px = 16, kLeastCell_px = 2, kFewestCells = 20, kMostCells = 48;
 /// Rays of a cell that tell which things it may see, and the margin for what lies between them.
 constexpr int kRays = 64;
 constexpr float kMargin = 0.4f;
-constexpr size_t kMostListed = 48;
+/// Things of a cell that are tried, brightest first, and targets that it has at most.
+constexpr size_t kMostTried = 768, kMostListed = 256;
 /// Share of a pixel's ordinary rays that may pass a target: where they are more, they do as well.
 constexpr double kMostMet = 0.25;
 /// Share of the light of a cell's brightest target below which another is left out.
@@ -28,6 +28,38 @@ constexpr double kLeastLight = 1e-3;
 bool may_be_target(const SmallFeature& feature) {
     return feature.is_lamp() && feature.reach_m > 0 && std::isfinite(feature.reach_m) &&
            std::isfinite(feature.radiance) && !(feature.at_infinity && feature.reach_m > 0.5f);
+}
+
+/// The targets of a cell, by what each is expected to add to a pixel. lamps: brightest first, and
+/// targets: what they are as such.
+TargetCell listed_in(const TargetCamera& camera, const FilmCell& place, V2i number, V2i size_px,
+                     std::span<const SmallFeature> lamps, std::span<const Target> targets) {
+    const RayBundle bundle =
+        bundle_of(camera, place, number_of(PrepassSeed::TargetCells), number, kRays);
+    TargetCell cell;
+    std::vector<ListedTarget>& list = cell.targets;
+    size_t tried = 0;
+    for (size_t n = 0; n < lamps.size() && tried < kMostTried; ++n) {
+        if (!passes(bundle, lamps[n], kMargin)) continue;
+        if (tried++ == 0) cell.map = camera.map(place);
+        if (!cell.map) break;
+        auto target = camera.listed(targets[n], *cell.map, size_px);
+        if (!target || !(target->met < kMostMet)) continue;
+        target->chance = target->met * static_cast<float>(lamps[n].radiance);
+        target->number = static_cast<uint32_t>(n);
+        list.push_back(*std::move(target));
+    }
+    std::stable_sort(list.begin(), list.end(),
+                     [](const auto& a, const auto& b) { return a.chance > b.chance; });
+    if (list.size() > kMostListed) list.erase(list.begin() + kMostListed, list.end());
+    std::erase_if(list, [brightest = list.empty() ? 0.f : list[0].chance](const auto& t) {
+        return !(t.chance > float(kLeastLight) * brightest);
+    });
+    float sum = 0;
+    for (const ListedTarget& t : list) sum += t.chance;
+    for (ListedTarget& t : list) t.chance /= sum;
+    if (list.empty()) cell.map = nullptr;
+    return cell;
 }
 
 }  // namespace
@@ -39,7 +71,7 @@ Target target_of(const SmallFeature& lamp) {
 
 std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i size_px,
                                                std::span<const SmallFeature> features,
-                                               const std::function<void()>& at_row) {
+                                               const RunTasks& run) {
     if (size_px.x < kCell_px || size_px.y < kCell_px) return nullptr;
     std::vector<SmallFeature> lamps;
     std::copy_if(features.begin(), features.end(), std::back_inserter(lamps), may_be_target);
@@ -49,42 +81,19 @@ std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i s
     auto out = std::make_shared<TargetGrid>();
     for (const SmallFeature& lamp : lamps) out->targets.push_back(target_of(lamp));
     const auto cells = [](int px) {
-        return std::max(px / kCell_px, std::min(px / kLeastCell_px, kFewestCells));
+        return std::clamp(px / kCell_px, std::min(px / kLeastCell_px, kFewestCells), kMostCells);
     };
     out->cells = {cells(size_px.x), cells(size_px.y)};
-    bool any = false;
-    for (int j = 0; j < out->cells.y; ++j) {
-        at_row();
-        for (int i = 0; i < out->cells.x; ++i) {
-            TargetCell& cell = out->lists.emplace_back();
-            std::vector<ListedTarget>& list = cell.targets;
-            const FilmCell place = out->cell(i, j, size_px);
-            const RayBundle bundle =
-                bundle_of(camera, place, number_of(PrepassSeed::TargetCells), {i, j}, kRays);
-            size_t tried = 0;
-            for (size_t n = 0; n < lamps.size(); ++n) {
-                if (!passes(bundle, lamps[n], kMargin)) continue;
-                if (tried == 0) cell.map = camera.map(place);
-                if (!cell.map || list.size() == kMostFound || ++tried > kMostTried) break;
-                auto target = camera.listed(out->targets[n], *cell.map, size_px);
-                if (!target || !(target->met < kMostMet)) continue;
-                target->chance = target->met * static_cast<float>(lamps[n].radiance);
-                target->number = static_cast<uint32_t>(n);
-                list.push_back(*std::move(target));
-            }
-            std::stable_sort(list.begin(), list.end(),
-                             [](const auto& a, const auto& b) { return a.chance > b.chance; });
-            if (list.size() > kMostListed) list.erase(list.begin() + kMostListed, list.end());
-            std::erase_if(list, [most = list.empty() ? 0.f : list[0].chance](const auto& t) {
-                return !(t.chance > float(kLeastLight) * most);
-            });
-            float sum = 0;
-            for (const ListedTarget& t : list) sum += t.chance;
-            for (ListedTarget& t : list) t.chance /= sum;
-            if (list.empty()) cell.map = nullptr;
-            any = any || !list.empty();
-        }
-    }
+    const auto width = static_cast<size_t>(out->cells.x);
+    out->lists.resize(width * static_cast<size_t>(out->cells.y));
+    run(static_cast<size_t>(out->cells.y), [&](size_t row) {
+        const auto j = static_cast<int>(row);
+        for (int i = 0; i < out->cells.x; ++i)
+            out->lists[row * width + static_cast<size_t>(i)] =
+                listed_in(camera, out->cell(i, j, size_px), {i, j}, size_px, lamps, out->targets);
+    });
+    const bool any = std::any_of(out->lists.begin(), out->lists.end(),
+                                 [](const TargetCell& cell) { return !cell.empty(); });
     return any ? out : nullptr;
 }
 

@@ -120,24 +120,21 @@ class Middles {
     std::vector<std::optional<V3f>> of_mesh_;
 };
 
+/// Adds the polished surfaces that a ray of a cell meets first.
+void look(HighlightSearch& search, const Ray& ray, size_t cell, std::vector<Start>& starts) {
+    const auto shaded = search.first(ray);
+    if (!shaded) return;
+    for (const Way way : {Way::Mirrored, Way::Through})
+        if (const auto met = search.met(*shaded, ray.direction, way))
+            starts.push_back({ray.origin, ray.direction, met->surface.hit.instance, cell, way});
+}
+
 /// What the cells of a frame see.
 struct SeenCells {
     std::vector<camera::RayBundle> bundles;
     V3f eye{0.f};                                   ///< mean of their origins
     std::map<uint32_t, std::vector<Start>> starts;  ///< by object
 
-    void look(HighlightSearch& search, const Ray& ray, size_t cell,
-              std::optional<uint32_t> only = {}) {
-        const auto shaded = search.first(ray);
-        if (!shaded) return;
-        for (const Way way : {Way::Mirrored, Way::Through}) {
-            const auto met = search.met(*shaded, ray.direction, way);
-            if (!met) continue;
-            const uint32_t instance = met->surface.hit.instance;
-            if (!only || instance == *only)
-                starts[instance].push_back({ray.origin, ray.direction, instance, cell, way});
-        }
-    }
     /// Cell that looks towards a point, as seen from the middle of the lens; none beyond the frame.
     [[nodiscard]] std::optional<size_t> towards(const V3f& point) const {
         std::optional<size_t> best;
@@ -175,24 +172,32 @@ std::vector<Start> in_turns(const std::map<uint32_t, std::vector<Start>>& by_obj
     return out;
 }
 
-SeenCells cells_of(const camera::Camera& camera, const Scene& scene, HighlightSearch& search,
-                   V2i frame_px) {
+SeenCells cells_of(const camera::Camera& camera, const Scene& scene, const Bvh& bvh, V2i frame_px,
+                   const camera::RunTasks& run) {
     const V2i cells = frame_px / kCell_px;
     SeenCells out;
-    for (int j = 0; j < cells.y; ++j)
+    out.bundles.resize(static_cast<size_t>(cells.x) * static_cast<size_t>(cells.y));
+    std::vector<std::vector<Start>> starts(out.bundles.size());
+    run(static_cast<size_t>(cells.y), [&](size_t row) {
+        HighlightSearch search(scene, bvh, INT64_MAX);
+        const auto j = static_cast<int>(row);
         for (int i = 0; i < cells.x; ++i) {
+            const size_t n = row * static_cast<size_t>(cells.x) + static_cast<size_t>(i);
             const camera::FilmCell cell{V2f(V2i(i, j)) / V2f(cells),
                                         V2f(V2i(i + 1, j + 1)) / V2f(cells)};
-            out.bundles.push_back(camera::bundle_of(
-                camera, cell, number_of(PrepassSeed::Highlights), {i, j}, kRaysOfCell));
-            for (const Ray& ray : out.bundles.back().rays)
-                out.look(search, ray, out.bundles.size() - 1);
+            out.bundles[n] = camera::bundle_of(camera, cell, number_of(PrepassSeed::Highlights),
+                                               {i, j}, kRaysOfCell);
+            for (const Ray& ray : out.bundles[n].rays) look(search, ray, n, starts[n]);
         }
+    });
+    for (const std::vector<Start>& of_cell : starts)
+        for (const Start& start : of_cell) out.starts[start.instance].push_back(start);
     for (const camera::RayBundle& bundle : out.bundles)
         out.eye += bundle.origin / static_cast<float>(out.bundles.size());
     // Small objects are passed by.
     size_t left = out.bundles.size() * kObjectsOfCell;
     Middles middles(scene);
+    HighlightSearch search(scene, bvh, INT64_MAX);
     const size_t step = scene.instances.size() / kMostTried + 1;
     for (size_t n = 0; n < scene.instances.size() && left > 0; n += step) {
         const Instance& instance = scene.instances[n];
@@ -204,7 +209,10 @@ SeenCells cells_of(const camera::Camera& camera, const Scene& scene, HighlightSe
         const auto cell = out.towards(middle);
         if (!cell) continue;
         const V3f eye = out.bundles[*cell].rays.front().origin;
-        out.look(search, {eye, unit(middle - eye)}, *cell, number);
+        std::vector<Start> starts_there;
+        look(search, {eye, unit(middle - eye)}, *cell, starts_there);
+        for (const Start& start : starts_there)
+            if (start.instance == number) out.starts[number].push_back(start);
         --left;
     }
     return out;
@@ -214,12 +222,12 @@ SeenCells cells_of(const camera::Camera& camera, const Scene& scene, HighlightSe
 
 std::vector<SmallFeature> highlights(const camera::Camera& camera, const Scene& scene,
                                      const Bvh& bvh, V2i frame_px,
-                                     std::span<const SmallFeature> features) {
+                                     std::span<const SmallFeature> features,
+                                     const camera::RunTasks& run) {
     const std::vector<Source> lamps = sources_of(scene, features);
     if (lamps.empty() || frame_px.x < kCell_px || frame_px.y < kCell_px) return {};
     const double pixels = double(frame_px.x) * double(frame_px.y);
-    HighlightSearch first(scene, bvh, INT64_MAX);
-    const SeenCells seen = cells_of(camera, scene, first, frame_px);
+    const SeenCells seen = cells_of(camera, scene, bvh, frame_px, run);
     HighlightSearch search(scene, bvh, static_cast<int64_t>(kSearchRays * pixels));
     auto more_rays = static_cast<int64_t>(kMoreRays * pixels);
     std::map<std::tuple<uint32_t, size_t, Way>, int> failures;  // by object, lamp and way

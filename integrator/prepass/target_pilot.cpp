@@ -12,11 +12,14 @@
 namespace petzval::integrator {
 namespace {
 
-/// Samples of a cell, rays to all of its targets, and to one of them.
+/// Samples of a cell, rays to all of its targets, and to one of them. Where there are more targets,
+/// some get none.
 constexpr uint32_t kOrdinary = 8, kSent = 48, kMostSent = 12;
 /// Rays to an image, over all cells: surfaces send few of them on to the lamp. And of all images
 /// together for a pixel.
 constexpr double kSentToImage = 96, kMostToImages = 1. / 8;
+/// Rays to a lamp that are enough to know whether it is seen.
+constexpr double kEnough = 128;
 /// Pixels of a cell for each ordinary sample, of which there are at least so many.
 constexpr uint32_t kPixelsPerSample = 32, kFewest = 2;
 /// Ratio of the frame's efforts that is worth it. Few samples of a cell know them badly, and what
@@ -43,16 +46,18 @@ struct Found {
     double counted = 0, counted2 = 0;  ///< what the shares leave, and its square
     double whole2 = 0;                 ///< square of ordinary rays in the same direction
     double cost = 0;
+    double share = 0;  ///< of the cell whose film points these are; a sum of them for several cells
 
-    void add(double whole, double share) {
-        counted += share * whole;
-        counted2 += share * whole * share * whole;
-        whole2 += share * whole * whole;
+    void add(double whole, double weight) {
+        counted += weight * whole;
+        counted2 += weight * whole * weight * whole;
+        whole2 += weight * whole * whole;
     }
     void add(const Found& o) {
         counted += o.counted, counted2 += o.counted2, whole2 += o.whole2, cost += o.cost;
+        share += o.share;
     }
-    void scale(double by) { counted *= by, counted2 *= by, whole2 *= by, cost *= by; }
+    void scale(double by) { counted *= by, counted2 *= by, whole2 *= by, cost *= by, share *= by; }
     /// What a target's light adds to the variance of ordinary rays, however seldom they meet it: by
     /// the shares of the rays that are sent to it.
     [[nodiscard]] double spread() const { return std::max(0., whole2 - counted * counted); }
@@ -68,10 +73,10 @@ class CellPilot {
     CellPilot(const camera::TargetCamera& camera, const PathTracer<>& tracer, V2i frame_px)
         : camera_(camera), tracer_(tracer), frame_px_(frame_px) {}
 
-    /// Samples of even points of a part of the film, which are drawn for a place of the frame; to:
-    /// a target, or none for ordinary ones.
-    [[nodiscard]] Found samples(V2i drawn_for, const camera::FilmCell& part, uint32_t count,
-                                const camera::TargetCell* to) const {
+    /// Samples of even points of a part of the film, which are drawn for a place of the frame, from
+    /// a first one on; to: a target, or none for ordinary ones.
+    [[nodiscard]] Found samples(V2i drawn_for, const camera::FilmCell& part, uint32_t begin,
+                                uint32_t count, const camera::TargetCell* to) const {
         Found out;
         PathStats stats;
         for (uint32_t first = 0; first < count; first += camera::kMostFilmPoints) {
@@ -82,7 +87,7 @@ class CellPilot {
             const auto n = std::min(count - first, static_cast<uint32_t>(camera::kMostFilmPoints));
             for (uint32_t i = 0; i < n; ++i) {
                 const Sampler sampler(SamplerKind::Owen, number_of(PrepassSeed::Targets),
-                                      {drawn_for.x, drawn_for.y, first + i});
+                                      {drawn_for.x, drawn_for.y, begin + first + i});
                 bands[i] = Bands::rgb();
                 points[i] =
                     at(part.first + sampler.get2(Dim::Film) * (part.last - part.first), sampler);
@@ -109,6 +114,7 @@ class CellPilot {
         }
         out.cost = steps(stats);
         out.scale(1. / count);
+        out.share = 1;
         return out;
     }
 
@@ -131,11 +137,15 @@ double seen_share(const camera::ListedTarget& target, const camera::FilmCell& ce
     return double(target.seen_from.within(cell).area() / cell.area());
 }
 
-/// Rays of the pilot that are sent to targets.
-class RaysToTargets {
+/// The pilot's rays to each target: how many a cell sends, and what all cells find. (A few rays of
+/// one cell miss what a part of it sees, and the picture of a target is about even.)
+class PooledTargets {
   public:
-    RaysToTargets(const camera::TargetGrid& grid, V2i frame_px)
-        : grid_(grid), shares_(grid.targets.size()) {
+    PooledTargets(const camera::TargetGrid& grid, V2i frame_px)
+        : grid_(grid),
+          shares_(grid.targets.size()),
+          found_(grid.targets.size()),
+          rays_(grid.targets.size()) {
         const auto images = static_cast<double>(
             std::count_if(grid.targets.begin(), grid.targets.end(),
                           [](const camera::Target& t) { return t.image.has_value(); }));
@@ -147,62 +157,73 @@ class RaysToTargets {
                 for (const camera::ListedTarget& target : grid.lists[n++].targets)
                     shares_[target.number] += seen_share(target, grid.cell(i, j, frame_px));
     }
-    /// Number of them from a cell; share: of the cell, that may see the target.
-    [[nodiscard]] uint32_t from(const camera::TargetCell& cell, const camera::ListedTarget& target,
-                                double share) const {
-        const auto targets = static_cast<uint32_t>(cell.targets.size());
-        const uint32_t usual = std::clamp(kSent / targets, 1u, kMostSent);
+    /// Number of rays from a cell; share: of the cell, that may see the target.
+    [[nodiscard]] uint32_t rays_from(size_t cell, const camera::ListedTarget& target,
+                                     double share) const {
+        const auto targets = static_cast<uint32_t>(grid_.lists[cell].targets.size());
+        const uint32_t drawn = hash32(static_cast<uint32_t>(cell), target.number);
+        const uint32_t usual = targets > kSent ? uint32_t(drawn % targets < kSent)
+                                               : std::min(kSent / targets, kMostSent);
         if (!grid_.targets[target.number].image) return usual;
         const double of_cell = of_image_ * share / shares_[target.number];
         return std::max(usual, static_cast<uint32_t>(std::ceil(of_cell)));
+    }
+    /// Adds what a cell finds at the targets of its list.
+    void add(size_t cell, const std::vector<Found>& sent) {
+        const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
+        for (size_t k = 0; k < sent.size(); ++k) {
+            found_[targets[k].number].add(sent[k]);
+            if (sent[k].share > 0)
+                rays_[targets[k].number] += rays_from(cell, targets[k], sent[k].share);
+        }
+    }
+    /// What a cell may expect of each of its targets. Where few rays were sent to a lamp, none may
+    /// have met it: it counts as if one ray more had found its share of what the cell's lamps
+    /// bring.
+    [[nodiscard]] std::vector<Found> in_cell(size_t cell, const camera::FilmCell& part) const {
+        const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
+        std::vector<Found> out;
+        Found lamps;
+        double chances = 0;
+        const auto is_lamp = [&](size_t k) { return !grid_.targets[targets[k].number].image; };
+        for (size_t k = 0; k < targets.size(); ++k) {
+            Found found = found_[targets[k].number];
+            found.scale(found.share > 0 ? seen_share(targets[k], part) / found.share : 0);
+            out.push_back(found);
+            if (is_lamp(k)) lamps.add(found), chances += double(targets[k].chance);
+        }
+        for (size_t k = 0; k < targets.size(); ++k) {
+            const double rays = rays_[targets[k].number];
+            if (!is_lamp(k) || rays >= kEnough) continue;
+            Found expected = lamps;
+            expected.scale(double(targets[k].chance) / (chances * (rays + 1)));
+            out[k].scale(rays / (rays + 1));
+            out[k].add(expected);
+        }
+        return out;
     }
 
   private:
     const camera::TargetGrid& grid_;
     std::vector<double> shares_;  ///< sums over the cells
+    std::vector<Found> found_;
+    std::vector<double> rays_;  ///< of all cells
     double of_image_;
 };
 
-/// What all cells find at a target: a few rays of one miss what a part of it sees, and the picture
-/// of a target is about even.
-class FoundAtTargets {
-  public:
-    explicit FoundAtTargets(size_t targets) : all_(targets) {}
-
-    /// share: of the cell's film points, those that may see it.
-    void add(const camera::ListedTarget& target, const Found& found, double share) {
-        all_[target.number].found.add(found);
-        all_[target.number].share += share;
-    }
-    [[nodiscard]] Found in_cell(const camera::ListedTarget& target, double share) const {
-        Found out = all_[target.number].found;
-        out.scale(share > 0 ? share / all_[target.number].share : 0);
-        return out;
-    }
-
-  private:
-    struct Sum {
-        Found found;
-        double share = 0;
-    };
-    std::vector<Sum> all_;
-};
-
 /// What ordinary samples find in a cell and in those beside it, and rays to targets in all.
-CellFound pooled(const camera::TargetGrid& grid, const std::vector<Found>& ordinary,
-                 const FoundAtTargets& targets, V2i frame_px, int i, int j) {
+CellFound pooled(const camera::TargetGrid& grid, const std::vector<CellFound>& found,
+                 const PooledTargets& targets, V2i frame_px, V2i cell) {
     const auto index = [&](int x, int y) { return static_cast<size_t>(y * grid.cells.x + x); };
-    const std::vector<camera::ListedTarget>& list = grid.lists[index(i, j)].targets;
     CellFound out;
     int count = 0;
-    for (int y = std::max(j - 1, 0); y <= std::min(j + 1, grid.cells.y - 1); ++y)
-        for (int x = std::max(i - 1, 0); x <= std::min(i + 1, grid.cells.x - 1); ++x) {
-            out.ordinary.add(ordinary[index(x, y)]);
+    for (int y = std::max(cell.y - 1, 0); y <= std::min(cell.y + 1, grid.cells.y - 1); ++y)
+        for (int x = std::max(cell.x - 1, 0); x <= std::min(cell.x + 1, grid.cells.x - 1); ++x) {
+            out.ordinary.add(found[index(x, y)].ordinary);
             ++count;
         }
     out.ordinary.scale(1. / count);
-    for (const camera::ListedTarget& target : list)
-        out.sent.push_back(targets.in_cell(target, seen_share(target, grid.cell(i, j, frame_px))));
+    out.sent = targets.in_cell(index(cell.x, cell.y), grid.cell(cell.x, cell.y, frame_px));
     return out;
 }
 
@@ -319,43 +340,53 @@ void take_best(std::vector<CellChoice>& cells) {
 
 std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetCamera& camera,
                                                            const Scene& scene, const Bvh& bvh,
-                                                           const LightChoice& lights,
-                                                           V2i frame_px) {
+                                                           const LightChoice& lights, V2i frame_px,
+                                                           const camera::RunTasks& run) {
     const camera::TargetGrid* const all = camera.targets().get();
     if (!all) return nullptr;
     const PathTracer<> tracer(scene, bvh, lights, {});
     const CellPilot pilot(camera, tracer, frame_px);
     const auto cell_px =
         static_cast<uint32_t>(frame_px.x / all->cells.x * (frame_px.y / all->cells.y));
-    const uint32_t ordinary = std::clamp(cell_px / kPixelsPerSample, kFewest, kOrdinary);
-    std::vector<Found> found;
-    FoundAtTargets at_targets(all->targets.size());
-    const RaysToTargets to_targets(*all, frame_px);
-    double mean = 0;
-    for (int j = 0; j < all->cells.y; ++j)
-        for (int i = 0; i < all->cells.x; ++i) {
-            const camera::TargetCell& cell = all->lists[found.size()];
-            const camera::FilmCell part = all->cell(i, j, frame_px);
-            found.push_back(pilot.samples({i, j}, part, ordinary, nullptr));
-            mean += found.back().counted;
-            for (const camera::ListedTarget& target : cell.targets) {
-                camera::TargetCell alone{cell.map, {target}};
-                alone.targets[0].chance = 1;
-                const double share = seen_share(target, part);
-                if (!(share > 0)) continue;
-                Found found_there = pilot.samples({i, j}, target.seen_from.within(part),
-                                                  to_targets.from(cell, target, share), &alone);
-                found_there.scale(share);
-                at_targets.add(target, found_there, share);
-                mean += found_there.counted;
-            }
+    const uint32_t count = std::clamp(cell_px / kPixelsPerSample, kFewest, kOrdinary);
+    PooledTargets at_targets(*all, frame_px);
+    // A row of cells is a task. What is found is added up in one order.
+    const auto each_cell = [&](const auto& f) {
+        run(static_cast<size_t>(all->cells.y), [&](size_t row) {
+            const auto j = static_cast<int>(row);
+            for (int i = 0; i < all->cells.x; ++i)
+                f(row * static_cast<size_t>(all->cells.x) + static_cast<size_t>(i), V2i(i, j));
+        });
+    };
+    std::vector<CellFound> found(all->lists.size());
+    each_cell([&](size_t n, V2i cell) {
+        const camera::FilmCell part = all->cell(cell.x, cell.y, frame_px);
+        found[n].ordinary = pilot.samples(cell, part, 0, count, nullptr);
+        uint32_t begin = count;
+        for (const camera::ListedTarget& target : all->lists[n].targets) {
+            Found& sent = found[n].sent.emplace_back();
+            const double share = seen_share(target, part);
+            const uint32_t rays = share > 0 ? at_targets.rays_from(n, target, share) : 0;
+            if (rays == 0) continue;
+            camera::TargetCell alone{all->lists[n].map, {target}};
+            alone.targets[0].chance = 1;
+            sent = pilot.samples(cell, target.seen_from.within(part), begin, rays, &alone);
+            begin += rays;
+            sent.scale(share);
         }
+    });
+    double mean = 0;
+    for (size_t n = 0; n < found.size(); ++n) {
+        mean += found[n].ordinary.counted;
+        for (const Found& sent : found[n].sent) mean += sent.counted;
+        at_targets.add(n, found[n].sent);
+    }
     const double dark = kDark * mean / static_cast<double>(found.size());
-    std::vector<CellChoice> cells;
-    for (int j = 0; j < all->cells.y; ++j)
-        for (int i = 0; i < all->cells.x; ++i)
-            cells.push_back(choice_of(all->lists[cells.size()], all->cell(i, j, frame_px),
-                                      pooled(*all, found, at_targets, frame_px, i, j), dark));
+    std::vector<CellChoice> cells(found.size());
+    each_cell([&](size_t n, V2i cell) {
+        cells[n] = choice_of(all->lists[n], all->cell(cell.x, cell.y, frame_px),
+                             pooled(*all, found, at_targets, frame_px, cell), dark);
+    });
     const Effort without = sum_of(cells);
     take_best(cells);
     const Effort with = sum_of(cells);

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "camera/run_tasks.h"
+
 namespace petzval::integrator {
 
 /// Runs f(task, worker) for every task in [0, count); worker < threads(), and no two tasks run at
@@ -62,11 +64,15 @@ class TbbExecutor {
     std::function<void()> before_task_;
 };
 
-/// Runs f(task) for every task in [0, count) on the threads of the arena that the caller is in, or
-/// of the machine where it is in none.
-template <class F>
-void run_here(size_t count, const F& f) {
-    tbb::parallel_for(size_t{0}, count, f);
+/// What runs tasks on the threads of the arena that its caller is in, or of the machine where that
+/// is in none. before_task is called before each, by several threads: an exception of it ends them.
+inline camera::RunTasks run_here(std::function<void()> before_task) {
+    return [before = std::move(before_task)](size_t count, const std::function<void(size_t)>& f) {
+        tbb::parallel_for(size_t{0}, count, [&](size_t task) {
+            before();
+            f(task);
+        });
+    };
 }
 
 class ThreadExecutor {

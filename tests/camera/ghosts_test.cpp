@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <thread>
 #include <tuple>
 
 #include "camera/ghosts/ghost_search.h"
 #include "tests/measure/ghost_light.h"
+#include "tests/support/targets.h"
 
 namespace petzval::camera {
 namespace {
@@ -125,16 +125,9 @@ TEST(GhostRegions, AreTheSameWhateverRunsTheSearch) {
     const GhostOptics optics(camera);
     std::vector<SmallFeature> suns;
     for (const double deg : {3, 8, 14}) suns.push_back(sun_at(deg, 0.005f));
-    const auto backwards = [](size_t count, const std::function<void(size_t)>& task) {
-        std::vector<std::jthread> threads;
-        for (const size_t parity : {0, 1})
-            threads.emplace_back([&, parity] {
-                for (size_t i = count; i-- > 0;)
-                    if (i % 2 == parity) task(i);
-            });
-    };
     const GhostDraws one(optics, GhostRegions(optics, suns)),
-        other(optics, GhostRegions(optics, suns, backwards), backwards);
+        other(optics, GhostRegions(optics, suns, test::backwards_on_two_threads),
+              test::backwards_on_two_threads);
     int drawn = 0;
     for (uint32_t i = 0; i < 4000; ++i) {
         const Sampler sampler(SamplerKind::Owen, 6, {0, 0, i});

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <thread>
 #include <vector>
 
 #include "camera/target_camera.h"
@@ -16,6 +18,16 @@ namespace petzval::test {
 [[nodiscard]] inline V2f random2(uint32_t i, uint32_t purpose) {
     return {to_unit_float(hash32(hash32(i, purpose), 0)),
             to_unit_float(hash32(hash32(i, purpose), 1))};
+}
+
+/// Runs tasks on two threads, the last ones first.
+inline void backwards_on_two_threads(size_t count, const std::function<void(size_t)>& task) {
+    std::array<std::jthread, 2> threads;
+    for (size_t parity = 0; parity < threads.size(); ++parity)
+        threads[parity] = std::jthread([&, parity] {
+            for (size_t i = count; i-- > 0;)
+                if (i % 2 == parity) task(i);
+        });
 }
 
 /// Part of the film of 16 x 16 pixels about a point.

@@ -10,7 +10,9 @@
 #include "camera/models/thin_lens.h"
 #include "camera/targets/make_target_camera.h"
 #include "camera/targets/target_grid.h"
+#include "integrator/prepass/highlights.h"
 #include "tests/support/scenes.h"
+#include "tests/support/targets.h"
 
 namespace petzval::apps {
 namespace {
@@ -48,13 +50,17 @@ void hide(Scene& scene, const V3f& lamp) {
 struct Grids {
     std::shared_ptr<const camera::TargetGrid> all, paying;
 };
-Grids grids_of(World& world) {
+Grids grids_of(World& world, const camera::RunTasks& run = camera::one_by_one) {
     world.finish();
-    const auto camera =
-        camera::target_camera(std::make_shared<camera::ThinLensCamera>(wide_lens()));
-    camera->set_targets(camera::find_targets(*camera, kPilot_px, small_features_of(world.scene)));
+    const auto still = std::make_shared<camera::ThinLensCamera>(wide_lens());
+    const auto camera = camera::target_camera(still);
+    std::vector<SmallFeature> features = small_features_of(world.scene, 1024);
+    for (const SmallFeature& image :
+         integrator::highlights(*still, world.scene, *world.bvh, kPilot_px, features, run))
+        features.push_back(image);
+    camera->set_targets(camera::find_targets(*camera, kPilot_px, features, run));
     return {camera->targets(), integrator::targets_that_pay(*camera, world.scene, *world.bvh,
-                                                            *world.lights, kPilot_px)};
+                                                            *world.lights, kPilot_px, run)};
 }
 
 bool is_at(const camera::TargetGrid& grid, const camera::ListedTarget& listed, const V3f& lamp) {
@@ -140,6 +146,68 @@ TEST(TargetPilot, NothingThatDoesNotPay) {
         const Grids grids = grids_of(world);
         ASSERT_NE(grids.all, nullptr);
         EXPECT_EQ(grids.paying, nullptr);
+    }
+}
+
+/// So many lamps, evenly over a rectangle of the view.
+std::vector<V3f> place_lamps(Scene& scene, uint32_t count) {
+    std::vector<V3f> out;
+    for (uint32_t i = 0; i < count; ++i) {
+        const V2f u = random2(i, 1);
+        out.emplace_back((u.x - 0.5f) * 0.4f, (u.y - 0.5f) * 0.3f, -kFar_m);
+        place(scene, sphere(out.back(), 0.002f, 4, true), emitter_material(5000));
+    }
+    return out;
+}
+
+// The pilot sends few rays to each, and some lamps are met by none: they are kept too.
+TEST(TargetPilot, HundredsOfLampsAreAllKept) {
+    World world;
+    const std::vector<V3f> lamps = place_lamps(world.scene, 400);
+    place_wall(world.scene);
+    const Grids grids = grids_of(world);
+    ASSERT_NE(grids.paying, nullptr);
+    expect_sane(grids);
+    size_t longest = 0, found = 0, kept = 0;
+    for (size_t i = 0; i < grids.all->lists.size(); ++i) {
+        longest = std::max(longest, grids.all->lists[i].targets.size());
+        found += grids.all->lists[i].targets.size();
+        kept += grids.paying->lists[i].targets.size();
+    }
+    EXPECT_GT(longest, 80u);
+    EXPECT_GT(double(kept), 0.99 * double(found));
+    for (const V3f& lamp : lamps)
+        EXPECT_GT(cells_with(*grids.paying, lamp), 0u)
+            << lamp << ", of " << cells_with(*grids.all, lamp);
+}
+
+TEST(TargetTasks, FindTheSameWhateverRunsThem) {
+    World one, other;
+    for (World* world : {&one, &other}) {
+        place_lamps(world->scene, 40);
+        place_wall(world->scene);
+        Material mirror;
+        mirror.metallic = 1, mirror.roughness = 0;
+        for (const float x : {-0.1f, 0.f, 0.1f})
+            place(world->scene, sphere(V3f(x, -0.05f, -2), 0.03f, 32, true), mirror);
+        place_lamp(world->scene, V3f(0.5f, 1, 0), 1e5f);
+    }
+    const Grids plain = grids_of(one), threads = grids_of(other, test::backwards_on_two_threads);
+    ASSERT_NE(plain.paying, nullptr);
+    ASSERT_NE(threads.paying, nullptr);
+    EXPECT_GT(std::count_if(plain.all->targets.begin(), plain.all->targets.end(),
+                            [](const camera::Target& t) { return t.image.has_value(); }),
+              0);
+    ASSERT_EQ(plain.paying->lists.size(), threads.paying->lists.size());
+    for (size_t i = 0; i < plain.paying->lists.size(); ++i) {
+        const camera::TargetCell &a = plain.paying->lists[i], &b = threads.paying->lists[i];
+        EXPECT_EQ(a.rays, b.rays);
+        ASSERT_EQ(a.targets.size(), b.targets.size());
+        for (size_t k = 0; k < a.targets.size(); ++k) {
+            EXPECT_EQ(a.targets[k].number, b.targets[k].number);
+            EXPECT_EQ(a.targets[k].chance, b.targets[k].chance);
+            EXPECT_EQ(a.targets[k].seen_from.low, b.targets[k].seen_from.low);
+        }
     }
 }
 

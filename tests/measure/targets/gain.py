@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """Measures what rays to targets bring: pictures with `--method targets=off` and `auto`, five seeds of each, by turns.
+Five more of each, of other seeds, are the mean to which noise is put in proportion.
 
     gain.py PETZVAL NAME -- ARGUMENTS OF RENDER
 
 Prints the ratios of noise, of CPU time, and the gain in efficiency, 1 / (noise x CPU time), of the whole frame and of its
 discs, with the smallest and the largest of what five leave-one-out sets give. Noise is the mean over pixels of the
-variance over seeds, over the squared mean plus a hundredth of the frame's squared grey. Discs are the pixels whose
+variance over seeds, over the squared mean plus a hundredth of the frame's squared grey. (A mean of the same pictures
+would hold their own single bright pixels, and those would count less where they are.) Discs are the pixels whose
 median over the seeds with targets is twice as bright as the median of what lies around them, 96 pixels wide: there
 lamps are over half of the light. (By the mean, single bright pixels would count as discs.)
 "trimmed" leaves out the worst 0.1 % of the pixels.
@@ -60,12 +62,14 @@ def main(program, name, arguments):
                 picture, seconds = render(program, arguments, targets, seed, folder)
                 pictures[targets].append(picture)
                 cpu_s[targets].append(seconds)
-    mean = numpy.mean(pictures["auto"], axis=0)
+        others = [render(program, arguments, targets, SEEDS + seed, folder)[0]
+                  for seed in range(1, SEEDS + 1) for targets in pictures]
+    mean = numpy.mean(others, axis=0)
     grey = numpy.median(pictures["auto"], axis=0).mean(-1)
     discs = grey > 2 * median_around(grey)
     cost = float(numpy.median(numpy.array(cpu_s["auto"]) / numpy.array(cpu_s["off"])))
     print("%s: mean auto / off %.4f, CPU time %.2f, discs %.1f %% of the frame" % (
-        name, mean.mean() / numpy.mean(pictures["off"]), cost, 100 * discs.mean()))
+        name, numpy.mean(pictures["auto"]) / numpy.mean(pictures["off"]), cost, 100 * discs.mean()))
     for place, where in (("frame", numpy.ones_like(discs)), ("discs", discs)):
         if not where.any():
             continue

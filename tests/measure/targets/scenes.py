@@ -239,8 +239,8 @@ def write_city(path):
     file.write(path)
 
 
-def write_fairy(path):
-    """200 fairy lights of 3 mm in eight garlands at 1.5 to 6 m, a matt wall behind, a chequered ball at 1 m."""
+def write_fairy(path, garlands=8):
+    """25 fairy lights of 3 mm in each garland at 1.5 to 6 m, a matt wall behind, a chequered ball at 1 m."""
     draw, file = random.Random(4), Gltf()
     matt = file.add_material((.45, .42, .4), 0, 1)
     file.add_floor(matt, -1.6, 5, 3, -6.5)
@@ -248,8 +248,9 @@ def write_fairy(path):
     file.add_softbox(300)
     file.add_chequered_ball(.08, .1, -.1, -1.08)
     lights = [file.add_mesh(file.add_shining(colour, 2e5), *ball(.0015, 2)) for colour in COLOURS]
-    for garland in range(8):
-        ends = [(draw.uniform(1.6, 5.9), side * .34, draw.uniform(.24 - .05 * garland, .27 - .05 * garland)) for side in (-1, 1)]
+    for garland in range(garlands):
+        down = .4 / garlands * garland
+        ends = [(draw.uniform(1.6, 5.9), side * .34, draw.uniform(.24 - down, .27 - down)) for side in (-1, 1)]
         sag = draw.uniform(.05, .13)
         for i in range(25):
             t = (i + draw.uniform(.3, .7)) / 25
@@ -341,12 +342,39 @@ def write_workshop(path):
     file.write(path)
 
 
+def write_crowd(path):
+    """2,000 fairy lights in 80 garlands."""
+    write_fairy(path, 80)
+
+
+def write_block(path):
+    """20 lamps of 6 mm at 3 to 7 m on a matt floor, most of them behind a block of clear glass 0.3 m thick."""
+    draw, file = random.Random(9), Gltf()
+    matt = file.add_material((.4, .4, .4), 0, 1)
+    file.add_floor(matt, -.6, 6, 1, -8)
+    file.add_wall(matt, -6, 6, -.6, 4, -8)
+    corners = [(x, y, z) for x in (-.6, .6) for y in (-.5, .5) for z in (-1.9, -1.6)]
+    faces = []
+    for a, b, c, d in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)):
+        faces += [(a, b, c), (a, c, d)]
+    file.add_node(mesh=file.add_mesh(file.add_glass((1, 1, 1), 1.5, .3), corners, faces))
+    lamps = [file.add_mesh(file.add_shining(colour, 2e5), *ball(.003, 3)) for colour in COLOURS]
+    for i in range(20):
+        away = draw.uniform(3, 7)
+        file.add_node(mesh=lamps[i % 5], translation=[
+            draw.uniform(-.25, .25) * away, draw.uniform(-.08, .2) * away, -away])
+    file.add_softbox(300)
+    file.write(path)
+
+
 AHEAD = "--look-at 0,0,0,0,0,-1"
 SCENES = {
     "night": (write_night, AHEAD + " --focus 1m"),
     "glints": (write_glints, AHEAD + " --focus 0.4m --env sun.hdr"),
     "city": (write_city, "--look-at 0,1.6,0,0,1.72,-1 --focus 1.5m"),
     "fairy": (write_fairy, AHEAD + " --focus 1m"),
+    "crowd": (write_crowd, AHEAD + " --focus 0.5m"),
+    "block": (write_block, AHEAD + " --focus 1m"),
     "dew": (write_dew, "--look-at 0,0,0,0,-0.2,-1 --focus 0.5m --fstop 2.8 --env sun.hdr --env-rotate 110"),
     "asphalt": (write_asphalt, "--look-at 0,0.4,0,0,0.4,-1 --focus 2m"),
     "tree": (write_tree, AHEAD + " --focus 1.5m"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the parts of a search for ghosts are run: whoever has threads says.
+// How the parts of a search before the first sample are run: whoever has threads says.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace petzval::camera {
 
 /// Runs a task for each number in [0, count), in any order and several at once, and returns when
 /// all are done.
-using RunGhostTasks = std::function<void(size_t count, const std::function<void(size_t)>& task)>;
+using RunTasks = std::function<void(size_t count, const std::function<void(size_t)>& task)>;
 
 /// Runs them one after another.
 inline void one_by_one(size_t count, const std::function<void(size_t)>& task) {

@@ -85,6 +85,7 @@ class StopMap;
 struct TargetCell {
     std::shared_ptr<const StopMap> map;  ///< nullptr only where there are no targets
     std::vector<ListedTarget> targets;
+    static constexpr size_t kMostTargets = 256;
     static constexpr uint32_t kMostRays = CameraSample::kMostTargetRays;
     uint32_t rays =
         1;  ///< of a sample to its targets, where all lanes share them; at most kMostRays

@@ -14,7 +14,8 @@ namespace petzval::apps {
 
 /// Adds to the camera that renders the ghosts of its lens, beside its own rays or instead of them,
 /// where there are any to show. What is the same in another setup of the scene is taken from there;
-/// nullptr: there is none. next_step: called again and again; an exception of it ends the search.
+/// nullptr: there is none. next_step: called again and again, by several threads; an exception of
+/// it ends the search.
 /// Throws ArgumentError where ghosts alone are asked for and no surface reflects.
 void add_ghosts(const CameraRequest&, const RenderSetup* like, const PreparedScene&,
                 const std::function<void()>& next_step, View&);

@@ -119,13 +119,13 @@ void StopTargetCamera::sample_beside(std::span<const FilmPoint> points,
 }
 
 // Points of the stop whose rays pass the picked targets, for the film points that have one.
-void StopTargetCamera::aim_at_stop(const Batch& batch, uint32_t ray,
+void StopTargetCamera::aim_at_stop(const Batch& batch, const PickedViews& views, uint32_t ray,
                                    std::vector<Aimed>& out) const {
     std::vector<StopSearch> searches;
     searches.reserve(batch.points.size());
     std::array<size_t, kMostFilmPoints> of{};
     for (size_t i = 0; i < batch.points.size(); ++i) {
-        const auto view = picked(batch, i, ray);
+        const std::optional<TargetView>& view = views[i];
         if (!view || view->target->is_sharp || !view->target->seen_from.contains_point(view->film))
             continue;
         of[searches.size()] = i;
@@ -147,10 +147,10 @@ void StopTargetCamera::aim_at_stop(const Batch& batch, uint32_t ray,
 }
 
 // Any point of the stop, and a film point of the pixel that sees the picked target through it.
-void StopTargetCamera::aim_at_film(const Batch& batch, uint32_t ray,
+void StopTargetCamera::aim_at_film(const Batch& batch, const PickedViews& views, uint32_t ray,
                                    std::vector<Aimed>& out) const {
     for (size_t i = 0; i < batch.points.size(); ++i) {
-        auto view = picked(batch, i, ray);
+        std::optional<TargetView> view = views[i];
         if (!view || !view->target->is_sharp) continue;
         Aimed aimed{i, batch.points[i], {}, view->target};
         view->film = middle_of_pixel(aimed.point);
@@ -209,8 +209,10 @@ void StopTargetCamera::sample_targets(std::span<const FilmPoint> points,
     }
     for (uint32_t ray = 0; ray < rays; ++ray) {
         std::vector<Aimed> aimed;
-        aim_at_stop(batch, ray, aimed);
-        aim_at_film(batch, ray, aimed);
+        PickedViews views;
+        for (size_t i = 0; i < points.size(); ++i) views[i] = picked(batch, i, ray);
+        aim_at_stop(batch, views, ray, aimed);
+        aim_at_film(batch, views, ray, aimed);
         const size_t count = aimed.size();
         if (count == 0) continue;
         std::array<FilmPoint, kMostFilmPoints> sent;

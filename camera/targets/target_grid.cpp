@@ -18,8 +18,8 @@ constexpr int kCell_px = 16, kLeastCell_px = 2, kFewestCells = 20, kMostCells = 
 /// Rays of a cell that tell which things it may see, and the margin for what lies between them.
 constexpr int kRays = 64;
 constexpr float kMargin = 0.4f;
-/// Things of a cell that are tried, brightest first, and targets that it has at most.
-constexpr size_t kMostTried = 768, kMostListed = 256;
+/// Things of a cell that are tried, brightest first.
+constexpr size_t kMostTried = 3 * TargetCell::kMostTargets;
 /// Share of a pixel's ordinary rays that may pass a target: where they are more, they do as well.
 constexpr double kMostMet = 0.25;
 /// Share of the light of a cell's brightest target below which another is left out.
@@ -51,10 +51,12 @@ TargetCell listed_in(const TargetCamera& camera, const FilmCell& place, V2i numb
     }
     std::stable_sort(list.begin(), list.end(),
                      [](const auto& a, const auto& b) { return a.chance > b.chance; });
-    if (list.size() > kMostListed) list.erase(list.begin() + kMostListed, list.end());
+    if (list.size() > TargetCell::kMostTargets)
+        list.erase(list.begin() + TargetCell::kMostTargets, list.end());
     std::erase_if(list, [brightest = list.empty() ? 0.f : list[0].chance](const auto& t) {
         return !(t.chance > float(kLeastLight) * brightest);
     });
+    list.shrink_to_fit();
     float sum = 0;
     for (const ListedTarget& t : list) sum += t.chance;
     for (ListedTarget& t : list) t.chance /= sum;
@@ -84,13 +86,10 @@ std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i s
         return std::clamp(px / kCell_px, std::min(px / kLeastCell_px, kFewestCells), kMostCells);
     };
     out->cells = {cells(size_px.x), cells(size_px.y)};
-    const auto width = static_cast<size_t>(out->cells.x);
-    out->lists.resize(width * static_cast<size_t>(out->cells.y));
-    run(static_cast<size_t>(out->cells.y), [&](size_t row) {
-        const auto j = static_cast<int>(row);
-        for (int i = 0; i < out->cells.x; ++i)
-            out->lists[row * width + static_cast<size_t>(i)] =
-                listed_in(camera, out->cell(i, j, size_px), {i, j}, size_px, lamps, out->targets);
+    out->lists.resize(static_cast<size_t>(out->cells.x) * static_cast<size_t>(out->cells.y));
+    run_cells(run, out->cells, [&](size_t n, V2i cell) {
+        out->lists[n] = listed_in(camera, out->cell(cell.x, cell.y, size_px), cell, size_px, lamps,
+                                  out->targets);
     });
     const bool any = std::any_of(out->lists.begin(), out->lists.end(),
                                  [](const TargetCell& cell) { return !cell.empty(); });

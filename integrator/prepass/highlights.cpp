@@ -178,17 +178,12 @@ SeenCells cells_of(const camera::Camera& camera, const Scene& scene, const Bvh& 
     SeenCells out;
     out.bundles.resize(static_cast<size_t>(cells.x) * static_cast<size_t>(cells.y));
     std::vector<std::vector<Start>> starts(out.bundles.size());
-    run(static_cast<size_t>(cells.y), [&](size_t row) {
+    camera::run_cells(run, cells, [&](size_t n, V2i place) {
         HighlightSearch search(scene, bvh, INT64_MAX);
-        const auto j = static_cast<int>(row);
-        for (int i = 0; i < cells.x; ++i) {
-            const size_t n = row * static_cast<size_t>(cells.x) + static_cast<size_t>(i);
-            const camera::FilmCell cell{V2f(V2i(i, j)) / V2f(cells),
-                                        V2f(V2i(i + 1, j + 1)) / V2f(cells)};
-            out.bundles[n] = camera::bundle_of(camera, cell, number_of(PrepassSeed::Highlights),
-                                               {i, j}, kRaysOfCell);
-            for (const Ray& ray : out.bundles[n].rays) look(search, ray, n, starts[n]);
-        }
+        const camera::FilmCell cell{V2f(place) / V2f(cells), V2f(place + V2i(1, 1)) / V2f(cells)};
+        out.bundles[n] =
+            camera::bundle_of(camera, cell, number_of(PrepassSeed::Highlights), place, kRaysOfCell);
+        for (const Ray& ray : out.bundles[n].rays) look(search, ray, n, starts[n]);
     });
     for (const std::vector<Start>& of_cell : starts)
         for (const Start& start : of_cell) out.starts[start.instance].push_back(start);

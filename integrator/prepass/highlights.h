@@ -22,8 +22,8 @@ namespace petzval::integrator {
 /// half-way between the directions to the lens and to the lamp, or for the ray that glass bends to
 /// the lamp. The same for other points of the lens. At most a seventh of a ray is cast for a pixel,
 /// and half of one more where images are found; one that glass bends counts as several in the
-/// search, and as one before it. A pure function of the arguments. Each row of cells is a task,
-/// then the rest is one.
+/// search, and as one before it. A pure function of the arguments.
+/// What each cell casts first is a task; the caller's thread does the rest.
 [[nodiscard]] std::vector<SmallFeature> highlights(const camera::Camera&, const Scene&, const Bvh&,
                                                    V2i frame_px,
                                                    std::span<const SmallFeature> features,

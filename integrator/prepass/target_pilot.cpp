@@ -2,6 +2,7 @@
 #include "integrator/prepass/target_pilot.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/film/film.h"
@@ -12,14 +13,16 @@
 namespace petzval::integrator {
 namespace {
 
-/// Samples of a cell, rays to all of its targets, and to one of them. Where there are more targets,
-/// some get none.
-constexpr uint32_t kOrdinary = 8, kSent = 48, kMostSent = 12;
+/// Samples of a cell.
+constexpr uint32_t kOrdinary = 8;
+/// Rays of a cell to all of its targets, and to one of them. Of many targets some get none.
+constexpr double kSent = 48, kMostSent = 12;
 /// Rays to an image, over all cells: surfaces send few of them on to the lamp. And of all images
 /// together for a pixel.
 constexpr double kSentToImage = 96, kMostToImages = 1. / 8;
-/// Rays to a lamp that are enough to know whether it is seen.
-constexpr double kEnough = 128;
+/// Share of the light expected of a lamp from which on the pilot has met it; and chance to be seen
+/// below which one that it has not met is left out.
+constexpr double kMet = 0.05, kLeastSeen = 0.005;
 /// Pixels of a cell for each ordinary sample, of which there are at least so many.
 constexpr uint32_t kPixelsPerSample = 32, kFewest = 2;
 /// Ratio of the frame's efforts that is worth it. Few samples of a cell know them badly, and what
@@ -47,6 +50,7 @@ struct Found {
     double whole2 = 0;                 ///< square of ordinary rays in the same direction
     double cost = 0;
     double share = 0;  ///< of the cell whose film points these are; a sum of them for several cells
+    double seen = 1;   ///< chance that the target is seen at all
 
     void add(double whole, double weight) {
         counted += weight * whole;
@@ -157,16 +161,14 @@ class PooledTargets {
                 for (const camera::ListedTarget& target : grid.lists[n++].targets)
                     shares_[target.number] += seen_share(target, grid.cell(i, j, frame_px));
     }
-    /// Number of rays from a cell; share: of the cell, that may see the target.
+    /// Number of rays from a cell, drawn; share: of the cell, that may see the target.
     [[nodiscard]] uint32_t rays_from(size_t cell, const camera::ListedTarget& target,
                                      double share) const {
-        const auto targets = static_cast<uint32_t>(grid_.lists[cell].targets.size());
+        double rays = std::min(kSent / double(grid_.lists[cell].targets.size()), kMostSent);
+        if (grid_.targets[target.number].image)
+            rays = std::max(rays, of_image_ * share / shares_[target.number]);
         const uint32_t drawn = hash32(static_cast<uint32_t>(cell), target.number);
-        const uint32_t usual = targets > kSent ? uint32_t(drawn % targets < kSent)
-                                               : std::min(kSent / targets, kMostSent);
-        if (!grid_.targets[target.number].image) return usual;
-        const double of_cell = of_image_ * share / shares_[target.number];
-        return std::max(usual, static_cast<uint32_t>(std::ceil(of_cell)));
+        return static_cast<uint32_t>(rays + double(to_unit_float(drawn)));
     }
     /// Adds what a cell finds at the targets of its list.
     void add(size_t cell, const std::vector<Found>& sent) {
@@ -177,28 +179,51 @@ class PooledTargets {
                 rays_[targets[k].number] += rays_from(cell, targets[k], sent[k].share);
         }
     }
-    /// What a cell may expect of each of its targets. Where few rays were sent to a lamp, none may
-    /// have met it: it counts as if one ray more had found its share of what the cell's lamps
-    /// bring.
+    /// What a cell may expect of each of its targets. Few rays are sent to one of hundreds of
+    /// lamps, and none may have met it. Of such a lamp is expected what the others bring, by the
+    /// chance that it is seen (Bayes): where most lamps were met it is likely, where most were not
+    /// it is hidden.
     [[nodiscard]] std::vector<Found> in_cell(size_t cell, const camera::FilmCell& part) const {
         const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
         std::vector<Found> out;
-        Found lamps;
-        double chances = 0;
+        double light = 0, chances = 0;
         const auto is_lamp = [&](size_t k) { return !grid_.targets[targets[k].number].image; };
+        const auto rays = [&](size_t k) { return rays_[targets[k].number]; };
         for (size_t k = 0; k < targets.size(); ++k) {
             Found found = found_[targets[k].number];
             found.scale(found.share > 0 ? seen_share(targets[k], part) / found.share : 0);
             out.push_back(found);
-            if (is_lamp(k)) lamps.add(found), chances += double(targets[k].chance);
+            if (is_lamp(k) && rays(k) > 0)
+                light += found.counted, chances += double(targets[k].chance);
         }
+        if (!(light > 0)) return out;
+        const auto is_met = [&](size_t k) {
+            return out[k].counted * chances > kMet * light * double(targets[k].chance);
+        };
+        Found lamps;
+        double met = 0, asked = 0, chances_met = 0, square = 0;
         for (size_t k = 0; k < targets.size(); ++k) {
-            const double rays = rays_[targets[k].number];
-            if (!is_lamp(k) || rays >= kEnough) continue;
+            if (!is_lamp(k) || rays(k) == 0) continue;
+            ++asked;
+            if (!is_met(k)) continue;
+            ++met, chances_met += double(targets[k].chance);
+            lamps.add(out[k]), square += out[k].counted * out[k].counted;
+        }
+        // Of all rays to lamps those that meet them, as they bring about the same. Half of it: some
+        // lamps are met less than others.
+        const double hits = std::min(square / lamps.counted2, 1.) / 2,
+                     seen = (met + 1) / (asked + 2);
+        for (size_t k = 0; k < targets.size(); ++k) {
+            if (!is_lamp(k) || (rays(k) > 0 && is_met(k))) continue;
+            const double missed = seen * std::pow(1 - hits, rays(k));
             Found expected = lamps;
-            expected.scale(double(targets[k].chance) / (chances * (rays + 1)));
-            out[k].scale(rays / (rays + 1));
-            out[k].add(expected);
+            expected.scale(double(targets[k].chance) / chances_met);
+            expected.seen = missed / (missed + 1 - seen);
+            if (expected.seen < kLeastSeen) expected.seen = 0;
+            expected.scale(expected.seen);
+            expected.cost =
+                rays(k) > 0 ? out[k].cost : lamps.cost / lamps.share * seen_share(targets[k], part);
+            out[k] = expected;
         }
         return out;
     }
@@ -240,6 +265,7 @@ struct Effort {
 struct CellChoice {
     std::vector<size_t> order;
     std::vector<double> roots;    ///< of the mean square of what each target brings
+    std::vector<double> seen;     ///< chance that each is seen
     std::vector<Effort> efforts;  ///< with none, and for each number of targets and of rays
     size_t taken = 0;
 };
@@ -257,10 +283,12 @@ CellChoice choice_of(const camera::TargetCell& cell, const camera::FilmCell& par
     double mean = ordinary.counted, rest = ordinary.spread();
     for (const Found& sent : found.sent) {
         out.roots.push_back(std::sqrt(sent.counted2));
+        out.seen.push_back(sent.seen);
         mean += sent.counted, rest += sent.spread();
     }
     const double scale = 1 / (mean * mean + dark * dark);
     const double usual = ordinary.cost + kLensCost;
+    out.efforts.reserve(1 + std::bit_width(camera::TargetCell::kMostRays) * out.order.size());
     out.efforts.push_back({std::sqrt(rest * scale), usual});
     // At places of the cell: what its targets bring that may be seen from there.
     struct Place {
@@ -350,16 +378,8 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
         static_cast<uint32_t>(frame_px.x / all->cells.x * (frame_px.y / all->cells.y));
     const uint32_t count = std::clamp(cell_px / kPixelsPerSample, kFewest, kOrdinary);
     PooledTargets at_targets(*all, frame_px);
-    // A row of cells is a task. What is found is added up in one order.
-    const auto each_cell = [&](const auto& f) {
-        run(static_cast<size_t>(all->cells.y), [&](size_t row) {
-            const auto j = static_cast<int>(row);
-            for (int i = 0; i < all->cells.x; ++i)
-                f(row * static_cast<size_t>(all->cells.x) + static_cast<size_t>(i), V2i(i, j));
-        });
-    };
     std::vector<CellFound> found(all->lists.size());
-    each_cell([&](size_t n, V2i cell) {
+    camera::run_cells(run, all->cells, [&](size_t n, V2i cell) {
         const camera::FilmCell part = all->cell(cell.x, cell.y, frame_px);
         found[n].ordinary = pilot.samples(cell, part, 0, count, nullptr);
         uint32_t begin = count;
@@ -383,7 +403,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
     }
     const double dark = kDark * mean / static_cast<double>(found.size());
     std::vector<CellChoice> cells(found.size());
-    each_cell([&](size_t n, V2i cell) {
+    camera::run_cells(run, all->cells, [&](size_t n, V2i cell) {
         cells[n] = choice_of(all->lists[n], all->cell(cell.x, cell.y, frame_px),
                              pooled(*all, found, at_targets, frame_px, cell), dark);
     });
@@ -400,12 +420,13 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
         const auto [noise, cost, rays, targets] = cell.efforts[cell.taken];
         if (targets > 0) kept.map = from.map;
         kept.rays = rays;
-        double sum = 0;
-        for (size_t n = 0; n < targets; ++n) sum += cell.roots[cell.order[n]];
+        double sum = 0, seen = 0;
+        for (size_t n = 0; n < targets; ++n)
+            sum += cell.roots[cell.order[n]], seen += cell.seen[cell.order[n]];
         for (size_t n = 0; n < targets; ++n) {
             kept.targets.push_back(from.targets[cell.order[n]]);
             // Few rays know the light badly: no target that pays is sent next to nothing.
-            const double even = 1. / static_cast<double>(targets);
+            const double even = cell.seen[cell.order[n]] / seen;
             kept.targets.back().chance =
                 static_cast<float>(std::lerp(cell.roots[cell.order[n]] / sum, even, kEvenly));
         }

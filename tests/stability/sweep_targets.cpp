@@ -20,8 +20,7 @@ constexpr uint32_t kTargetsSamples = 1u << 15;
 /// Share of ordinary rays that pass a target which is well out of focus, at most.
 constexpr float kOutOfFocus = 0.05f;
 const V2i kFrame_px(960, 640);
-/// Targets of a cell, as camera/targets/target_grid.cpp has it.
-constexpr int kRoom = 48;
+constexpr int kRoom = camera::TargetCell::kMostTargets;
 
 std::unique_ptr<camera::TargetCamera> thin(double fstop, double focus_m) {
     return camera::target_camera(std::make_shared<camera::ThinLensCamera>(camera::ThinLens{
@@ -209,7 +208,7 @@ Finding rays_to_targets() {
             add_row(f, 1, 1, side_m, focus_m, s.met, s.variance);
         }
     for (const auto& [lamps, targets] :
-         {std::pair(8, 8), std::pair(kRoom, kRoom), std::pair(kRoom + 1, kRoom), std::pair(64, 64)})
+         {std::pair(8, 8), std::pair(64, 64), std::pair(kRoom, kRoom), std::pair(kRoom + 1, kRoom)})
         add_row(f, lamps, targets, 0.004, 1., "", variance_of_many(lamps, targets));
     const auto in_focus = first_failure(
         1, 9.99, [](double focus_m) { return !(sent_to(0.01, 1.4, focus_m).met < 0.25); });

@@ -196,7 +196,7 @@ TEST(TargetMeans, AThousandLampsInAPixelAreASanePicture) {
     camera->set_targets(camera::find_targets(*camera, kSize, small_features_of(world.scene, 1024)));
     ASSERT_NE(camera->targets(), nullptr);
     for (const camera::TargetCell& cell : camera->targets()->lists)
-        EXPECT_LE(cell.targets.size(), 256u);
+        EXPECT_LE(cell.targets.size(), camera::TargetCell::kMostTargets);
     camera->set_targets(
         integrator::targets_that_pay(*camera, world.scene, *world.bvh, *world.lights, kSize));
     for (const Moments& part : rendered(world, *camera, 1)) EXPECT_TRUE(std::isfinite(part.mean()));

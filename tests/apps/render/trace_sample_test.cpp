@@ -22,13 +22,12 @@ struct Case {
 
 /// Light that the events of a sample add up to, as the way to the film adds it.
 V3f sum_of(const integrator::SampleRecord& sample) {
-    std::array<f4, 2> light{};  // of ordinary rays, and of those to targets
-    f4 along{};
+    f4 light{}, along{};
     size_t path = 0;
     const auto end_path = [&] {
         if (path == 0) return;
         const camera::CameraPath& ray = sample.rays[path - 1];
-        light[ray.to_target] += ray.weight * ray.mis_weight * along;
+        light += ray.weight * ray.mis_weight * along;
         along = f4{};
     };
     for (const integrator::PathEvent& event : sample.events) {
@@ -39,7 +38,7 @@ V3f sum_of(const integrator::SampleRecord& sample) {
     }
     end_path();
     EXPECT_EQ(path, sample.rays.size());
-    const Rgb sum = to_rgb(light[0] + light[1], sample.bands);
+    const Rgb sum = to_rgb(light, sample.bands);
     return {sum[0], sum[1], sum[2]};
 }
 

@@ -107,7 +107,7 @@ picture focus_1_aperture_0.5 480x320 $ornaments --method lens-radius=0.05 --focu
 # The four shapes, in the round iris's area: every lamp becomes one. The narrow view has large ones.
 more=2
 for iris in triangle rhomboid star:5 frame; do
-    large "iris_${iris%:*}" $ornaments --lens thin --fov 26 --method lens-radius=0.045 \
+    picture "iris_${iris%:*}" 480x320 $ornaments --lens thin --fov 26 --method lens-radius=0.045 \
         --focus 1m --aperture "$iris"
 done
 more=1
@@ -134,13 +134,13 @@ if is_wanted spherical_aberration; then
     jpeg spherical_aberration "${panels[@]}" --mosaic:pad=4 2x3
 fi
 # One lens of dense flint, bent for the least spherical aberration, so that colour is what is seen.
-large chromatic_aberration $ornaments --lens singlet:schott:N-SF11,0.7 --fov 16 \
+picture chromatic_aberration 480x320 $ornaments --lens singlet:schott:N-SF11,0.7 --fov 16 \
     --look-at 0,-0.1,0,0,-0.1,-1 --focal-length 200 --fstop 4 --focus 2m
 
 # The built-in scene through six cameras. Those of longer focal length stand farther back, the
 # Petzval looks a little higher, at the lamps, and the fisheye stands nearer.
 picture pinhole 480x320 $dusk
-large thin $dusk --fstop 2 --focus 1m
+picture thin 480x320 $dusk --fstop 2 --focus 1m
 large double_gauss $dusk --lens double-gauss-100mm-f2 \
     --look-at 0,1.133,0.994,0,1.02,0 --focus 2m
 large petzval $dusk --lens kodak-petzval-100mm-f2 \

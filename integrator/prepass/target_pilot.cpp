@@ -51,6 +51,7 @@ struct Found {
     double cost = 0;
     double share = 0;  ///< of the cell whose film points these are; a sum of them for several cells
     double seen = 1;   ///< chance that the target is seen at all
+    uint32_t rays = 0;  ///< that found it
 
     void add(double whole, double weight) {
         counted += weight * whole;
@@ -59,7 +60,7 @@ struct Found {
     }
     void add(const Found& o) {
         counted += o.counted, counted2 += o.counted2, whole2 += o.whole2, cost += o.cost;
-        share += o.share;
+        share += o.share, rays += o.rays;
     }
     void scale(double by) { counted *= by, counted2 *= by, whole2 *= by, cost *= by, share *= by; }
     /// What a target's light adds to the variance of ordinary rays, however seldom they meet it: by
@@ -118,7 +119,7 @@ class CellPilot {
         }
         out.cost = steps(stats);
         out.scale(1. / count);
-        out.share = 1;
+        out.share = 1, out.rays = count;
         return out;
     }
 
@@ -146,20 +147,16 @@ double seen_share(const camera::ListedTarget& target, const camera::FilmCell& ce
 class PooledTargets {
   public:
     PooledTargets(const camera::TargetGrid& grid, V2i frame_px)
-        : grid_(grid),
-          shares_(grid.targets.size()),
-          found_(grid.targets.size()),
-          rays_(grid.targets.size()) {
+        : grid_(grid), shares_(grid.targets.size()), found_(grid.targets.size()) {
         const auto images = static_cast<double>(
             std::count_if(grid.targets.begin(), grid.targets.end(),
                           [](const camera::Target& t) { return t.image.has_value(); }));
         of_image_ = std::min(kSentToImage, kMostToImages * double(frame_px.x) * double(frame_px.y) /
                                                std::max(1., images));
-        size_t n = 0;
-        for (int j = 0; j < grid.cells.y; ++j)
-            for (int i = 0; i < grid.cells.x; ++i)
-                for (const camera::ListedTarget& target : grid.lists[n++].targets)
-                    shares_[target.number] += seen_share(target, grid.cell(i, j, frame_px));
+        camera::run_cells(camera::one_by_one, grid.cells, [&](size_t n, V2i cell) {
+            for (const camera::ListedTarget& target : grid.lists[n].targets)
+                shares_[target.number] += seen_share(target, grid.cell(cell.x, cell.y, frame_px));
+        });
     }
     /// Number of rays from a cell, drawn; share: of the cell, that may see the target.
     [[nodiscard]] uint32_t rays_from(size_t cell, const camera::ListedTarget& target,
@@ -173,11 +170,7 @@ class PooledTargets {
     /// Adds what a cell finds at the targets of its list.
     void add(size_t cell, const std::vector<Found>& sent) {
         const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
-        for (size_t k = 0; k < sent.size(); ++k) {
-            found_[targets[k].number].add(sent[k]);
-            if (sent[k].share > 0)
-                rays_[targets[k].number] += rays_from(cell, targets[k], sent[k].share);
-        }
+        for (size_t k = 0; k < sent.size(); ++k) found_[targets[k].number].add(sent[k]);
     }
     /// What a cell may expect of each of its targets. Few rays are sent to one of hundreds of
     /// lamps, and none may have met it. Of such a lamp is expected what the others bring, by the
@@ -188,12 +181,11 @@ class PooledTargets {
         std::vector<Found> out;
         double light = 0, chances = 0;
         const auto is_lamp = [&](size_t k) { return !grid_.targets[targets[k].number].image; };
-        const auto rays = [&](size_t k) { return rays_[targets[k].number]; };
         for (size_t k = 0; k < targets.size(); ++k) {
             Found found = found_[targets[k].number];
             found.scale(found.share > 0 ? seen_share(targets[k], part) / found.share : 0);
             out.push_back(found);
-            if (is_lamp(k) && rays(k) > 0)
+            if (is_lamp(k) && found.rays > 0)
                 light += found.counted, chances += double(targets[k].chance);
         }
         if (!(light > 0)) return out;
@@ -203,7 +195,7 @@ class PooledTargets {
         Found lamps;
         double met = 0, asked = 0, chances_met = 0, square = 0;
         for (size_t k = 0; k < targets.size(); ++k) {
-            if (!is_lamp(k) || rays(k) == 0) continue;
+            if (!is_lamp(k) || out[k].rays == 0) continue;
             ++asked;
             if (!is_met(k)) continue;
             ++met, chances_met += double(targets[k].chance);
@@ -214,15 +206,16 @@ class PooledTargets {
         const double hits = std::min(square / lamps.counted2, 1.) / 2,
                      seen = (met + 1) / (asked + 2);
         for (size_t k = 0; k < targets.size(); ++k) {
-            if (!is_lamp(k) || (rays(k) > 0 && is_met(k))) continue;
-            const double missed = seen * std::pow(1 - hits, rays(k));
+            const uint32_t rays = out[k].rays;
+            if (!is_lamp(k) || (rays > 0 && is_met(k))) continue;
+            const double missed = seen * std::pow(1 - hits, rays);
             Found expected = lamps;
             expected.scale(double(targets[k].chance) / chances_met);
             expected.seen = missed / (missed + 1 - seen);
             if (expected.seen < kLeastSeen) expected.seen = 0;
             expected.scale(expected.seen);
             expected.cost =
-                rays(k) > 0 ? out[k].cost : lamps.cost / lamps.share * seen_share(targets[k], part);
+                rays > 0 ? out[k].cost : lamps.cost / lamps.share * seen_share(targets[k], part);
             out[k] = expected;
         }
         return out;
@@ -232,7 +225,6 @@ class PooledTargets {
     const camera::TargetGrid& grid_;
     std::vector<double> shares_;  ///< sums over the cells
     std::vector<Found> found_;
-    std::vector<double> rays_;  ///< of all cells
     double of_image_;
 };
 

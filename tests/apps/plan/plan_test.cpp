@@ -260,11 +260,13 @@ TEST_F(Plans, RaysToTargetsMakeLampsKnown) {
         if (node.contains("mesh"))
             node.update({{"scale", {1e-4, 1e-4, 1e-4}}, {"translation", {0.05, 0.03, -1}}});
     use(tiny);
-    const auto with = [&](const char* use) {
-        return planned({"--fov", "10", "--fstop", "4", "--focus", "0.5", "--tolerance", "20%",
-                        "--background", "0.5,0.5,0.5", "--method", "targets=" + std::string(use),
-                        "--size", "64x36"});
+    const auto options = [](const char* use) {
+        return Words{"--fov",       "10",   "--fstop",      "4",
+                     "--focus",     "0.5",  "--background", "0.5,0.5,0.5",
+                     "--tolerance", "20%",  "--method",     "targets=" + std::string(use),
+                     "--size",      "64x36"};
     };
+    const auto with = [&](const char* use) { return planned(options(use)); };
     const json automatic = with("auto"), off = with("off");
     ASSERT_TRUE(automatic.contains("targets")) << automatic << off;
     EXPECT_EQ(automatic["targets"]["lamps"], 1) << automatic;
@@ -272,6 +274,12 @@ TEST_F(Plans, RaysToTargetsMakeLampsKnown) {
     EXPECT_FALSE(off.contains("targets")) << off;
     EXPECT_GT(off["samples"].get<double>(), 4 * automatic["samples"].get<double>())
         << automatic << off;
+    Words words = options("auto");
+    words.insert(words.begin(), {"plan", scene_});
+    const Finished text = run_petzval(words);
+    const size_t samples = text.out.find("\nsamples "), targets = text.out.find("\ntargets ");
+    ASSERT_NE(targets, std::string::npos) << text.out << text.err;
+    EXPECT_EQ(text.out.find('\n', samples + 1), targets) << text.out;
 }
 
 TEST(PlanWords, LampsAreInMillimetresAndSpotsOfTheSkyInDegrees) {

@@ -74,8 +74,9 @@ size_t cells_with(const camera::TargetGrid& grid, const V3f& lamp) {
         }));
 }
 
-/// Each of a cell's targets is one of those that were found for it, and chances add up to 1.
-void expect_sane(const Grids& grids) {
+/// Each of a cell's targets is one of those that were found for it, chances add up to 1, and none
+/// has less than a share of what it would have if all had the same.
+void expect_sane(const Grids& grids, float least_share = 0.5f) {
     ASSERT_EQ(grids.paying->lists.size(), grids.all->lists.size());
     for (size_t i = 0; i < grids.all->lists.size(); ++i) {
         std::set<uint32_t> found, kept;
@@ -85,7 +86,7 @@ void expect_sane(const Grids& grids) {
         for (const camera::ListedTarget& t : list) {
             EXPECT_TRUE(kept.insert(t.number).second) << "twice in cell " << i;
             EXPECT_TRUE(found.count(t.number)) << "not of cell " << i;
-            EXPECT_GT(t.chance, 0);
+            EXPECT_GE(t.chance, least_share / float(list.size()) - 1e-6f);
             sum += double(t.chance);
         }
         if (list.empty()) continue;
@@ -167,7 +168,8 @@ TEST(TargetPilot, HundredsOfLampsAreAllKept) {
     place_wall(world.scene);
     const Grids grids = grids_of(world);
     ASSERT_NE(grids.paying, nullptr);
-    expect_sane(grids);
+    // Half even, and by a chance to be seen of a two-hundredth at least.
+    expect_sane(grids, 0.5f * 0.005f);
     size_t longest = 0, found = 0, kept = 0;
     for (size_t i = 0; i < grids.all->lists.size(); ++i) {
         longest = std::max(longest, grids.all->lists[i].targets.size());

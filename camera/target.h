@@ -89,6 +89,7 @@ struct TargetCell {
     static constexpr uint32_t kMostRays = CameraSample::kMostTargetRays;
     uint32_t rays =
         1;  ///< of a sample to its targets, where all lanes share them; at most kMostRays
+    float light_nits = 0;  ///< of all its targets, on average, if nothing hides them
 
     [[nodiscard]] bool empty() const { return targets.empty(); }
     /// Sum of the chances of the targets that a pixel may see, by the middle of it.

@@ -57,9 +57,8 @@ TargetCell listed_in(const TargetCamera& camera, const FilmCell& place, V2i numb
         return !(t.chance > float(kLeastLight) * brightest);
     });
     list.shrink_to_fit();
-    float sum = 0;
-    for (const ListedTarget& t : list) sum += t.chance;
-    for (ListedTarget& t : list) t.chance /= sum;
+    for (const ListedTarget& t : list) cell.light_nits += t.chance;
+    for (ListedTarget& t : list) t.chance /= cell.light_nits;
     if (list.empty()) cell.map = nullptr;
     return cell;
 }

@@ -11,8 +11,16 @@ namespace {
 constexpr size_t kFewestEyes = 4;
 /// Half-widths by which rays may miss an image for it to be one.
 constexpr float kMostOff = 3;
+/// Long side of an image over its short one, up to which a ball about it will do.
+constexpr float kMostStretchedInBall = 30;
 /// Times the usual distance from the point where the rays of an image meet.
 constexpr double kOutlier = 4;
+
+/// Whether a ball about an image would be much larger than it.
+bool is_long(const LampImage& image) {
+    const float most = image.in_half_widths.most();
+    return sqr(most) > kMostStretchedInBall * std::fabs(image.in_half_widths.determinant());
+}
 
 /// The point where rays seem to meet, with least squares: that with the smallest distance to them;
 /// nothing where they are parallel.
@@ -135,7 +143,7 @@ std::optional<SmallFeature> lamp_of(std::vector<LampImage> images, const Source&
     double spread = 0;
     for (const LampImage& image : images)
         spread = std::max(spread, (V3d(image.direction) - mean).length());
-    if (spread <= angle / 2) {
+    if (spread <= angle / 2 && !is_long(images[0])) {
         out.at_infinity = true;
         out.centre = V3f(mean);
         out.reach_m = out.radius_m = static_cast<float>(angle + spread);
@@ -169,6 +177,7 @@ std::optional<SmallFeature> lamp_of(std::vector<LampImage> images, const Source&
     out.radiance *= image_m * image_m / (reach_m * reach_m);
     out.area_m2 = double(kPi) * double(out.reach_m) * double(out.reach_m);
     see_astigmatism(out, images, mean, angle, luminance);
+    if (!out.image && is_long(images[0])) return std::nullopt;
     return out;
 }
 

@@ -20,9 +20,9 @@ constexpr double kSent = 48, kMostSent = 12;
 /// Rays to an image, over all cells: surfaces send few of them on to the lamp. And of all images
 /// together for a pixel.
 constexpr double kSentToImage = 96, kMostToImages = 1. / 8;
-/// Share of the light expected of a lamp from which on the pilot has met it; and chance to be seen
-/// below which one that it has not met is left out.
-constexpr double kMet = 0.05, kLeastSeen = 0.005;
+/// Share of the light expected of a lamp from which on the pilot has met it; and share below which
+/// one that it has not met is left out.
+constexpr double kMet = 0.05, kLeastSeen = 1e-3;
 /// Pixels of a cell for each ordinary sample, of which there are at least so many.
 constexpr uint32_t kPixelsPerSample = 32, kFewest = 2;
 /// Ratio of the frame's efforts that is worth it. Few samples of a cell know them badly, and what
@@ -142,20 +142,41 @@ double seen_share(const camera::ListedTarget& target, const camera::FilmCell& ce
     return double(target.seen_from.within(cell).area() / cell.area());
 }
 
+/// A lamp that none of some rays met.
+struct Missed {
+    double seen;   ///< chance that it is seen at all
+    double share;  ///< of it that is seen, where it is
+};
+
+/// What is known of it (Bayes). seen: its chance before, half of which is that only a share is
+/// seen, any as likely; hits: share of the rays that meet one which is wholly seen.
+Missed missed_by(uint32_t rays, double seen, double hits) {
+    const double n = rays, none = std::pow(1 - hits, n),
+                 // Integrals over the share s of (1 - hits s)^n, and of s times it.
+        partly = (1 - none * (1 - hits)) / (hits * (n + 1)),
+                 of_share = (1 - none * (1 - hits) * (1 + (n + 1) * hits)) /
+                            (hits * hits * (n + 1) * (n + 2)),
+                 missed = seen * (none + partly);
+    return {missed / (missed + 2 * (1 - seen)), (none + of_share) / (none + partly)};
+}
+
 /// The pilot's rays to each target: how many a cell sends, and what all cells find. (A few rays of
 /// one cell miss what a part of it sees, and the picture of a target is about even.)
 class PooledTargets {
   public:
     PooledTargets(const camera::TargetGrid& grid, V2i frame_px)
-        : grid_(grid), shares_(grid.targets.size()), found_(grid.targets.size()) {
+        : grid_(grid),
+          frame_px_(frame_px),
+          shares_(grid.targets.size()),
+          found_(grid.targets.size()) {
         const auto images = static_cast<double>(
             std::count_if(grid.targets.begin(), grid.targets.end(),
                           [](const camera::Target& t) { return t.image.has_value(); }));
         of_image_ = std::min(kSentToImage, kMostToImages * double(frame_px.x) * double(frame_px.y) /
                                                std::max(1., images));
-        camera::run_cells(camera::one_by_one, grid.cells, [&](size_t n, V2i cell) {
+        each_cell([&](size_t n, const camera::FilmCell& part) {
             for (const camera::ListedTarget& target : grid.lists[n].targets)
-                shares_[target.number] += seen_share(target, grid.cell(cell.x, cell.y, frame_px));
+                shares_[target.number] += seen_share(target, part);
         });
     }
     /// Number of rays from a cell, drawn; share: of the cell, that may see the target.
@@ -172,59 +193,114 @@ class PooledTargets {
         const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
         for (size_t k = 0; k < sent.size(); ++k) found_[targets[k].number].add(sent[k]);
     }
+    /// Learns what a lamp that is met brings; once, when all cells are there.
+    void finish() {
+        double light = 0, expected = 0;
+        each_cell([&](size_t n, const camera::FilmCell& part) {
+            const std::vector<Found> pooled = pooled_in(n, part);
+            each_lamp(n, pooled, [&](const camera::ListedTarget& target, const Found& found) {
+                light += found.counted, expected += double(expected_of(n, target));
+            });
+        });
+        if (!(expected > 0)) return;
+        least_ = kMet * light / expected;
+        each_cell([&](size_t n, const camera::FilmCell& part) {
+            all_lamps_.add(lamps_of(n, pooled_in(n, part)));
+        });
+    }
     /// What a cell may expect of each of its targets. Few rays are sent to one of hundreds of
     /// lamps, and none may have met it. Of such a lamp is expected what the others bring, by the
     /// chance that it is seen (Bayes): where most lamps were met it is likely, where most were not
     /// it is hidden.
     [[nodiscard]] std::vector<Found> in_cell(size_t cell, const camera::FilmCell& part) const {
         const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
-        std::vector<Found> out;
-        double light = 0, chances = 0;
-        const auto is_lamp = [&](size_t k) { return !grid_.targets[targets[k].number].image; };
-        for (size_t k = 0; k < targets.size(); ++k) {
-            Found found = found_[targets[k].number];
-            found.scale(found.share > 0 ? seen_share(targets[k], part) / found.share : 0);
-            out.push_back(found);
-            if (is_lamp(k) && found.rays > 0)
-                light += found.counted, chances += double(targets[k].chance);
-        }
-        if (!(light > 0)) return out;
-        const auto is_met = [&](size_t k) {
-            return out[k].counted * chances > kMet * light * double(targets[k].chance);
-        };
-        Found lamps;
-        double met = 0, asked = 0, chances_met = 0, square = 0;
-        for (size_t k = 0; k < targets.size(); ++k) {
-            if (!is_lamp(k) || out[k].rays == 0) continue;
-            ++asked;
-            if (!is_met(k)) continue;
-            ++met, chances_met += double(targets[k].chance);
-            lamps.add(out[k]), square += out[k].counted * out[k].counted;
-        }
+        std::vector<Found> out = pooled_in(cell, part);
+        const Lamps here = lamps_of(cell, out), &lamps = here.met > 0 ? here : all_lamps_;
+        if (lamps.met == 0) return out;
         // Of all rays to lamps those that meet them, as they bring about the same. Half of it: some
         // lamps are met less than others.
-        const double hits = std::min(square / lamps.counted2, 1.) / 2,
-                     seen = (met + 1) / (asked + 2);
+        const double hits = std::min(lamps.square / lamps.found.counted2, 1.) / 2,
+                     seen = (here.met + 1) / (here.asked + 2);
         for (size_t k = 0; k < targets.size(); ++k) {
             const uint32_t rays = out[k].rays;
-            if (!is_lamp(k) || (rays > 0 && is_met(k))) continue;
-            const double missed = seen * std::pow(1 - hits, rays);
-            Found expected = lamps;
-            expected.scale(double(targets[k].chance) / chances_met);
-            expected.seen = missed / (missed + 1 - seen);
+            if (!is_lamp(targets[k]) || (rays > 0 && is_met(cell, targets[k], out[k]))) continue;
+            Found expected = lamps.found;
+            expected.scale(expected_of(cell, targets[k]) / lamps.expected);
+            const Missed missed = missed_by(rays, seen, hits);
+            expected.seen = missed.seen * missed.share;
             if (expected.seen < kLeastSeen) expected.seen = 0;
             expected.scale(expected.seen);
+            // Noise counts by its mean: a lamp that is seen half of the time makes half of it.
+            expected.counted2 *= missed.seen, expected.whole2 *= missed.seen;
             expected.cost =
-                rays > 0 ? out[k].cost : lamps.cost / lamps.share * seen_share(targets[k], part);
+                rays > 0 ? out[k].cost
+                         : lamps.found.cost / lamps.found.share * seen_share(targets[k], part);
             out[k] = expected;
         }
         return out;
     }
 
   private:
+    /// Lamps to which rays were sent, and what those bring that were met.
+    struct Lamps {
+        double asked = 0, met = 0, expected = 0, square = 0;
+        Found found;
+
+        void add(const Lamps& o) {
+            asked += o.asked, met += o.met, expected += o.expected, square += o.square;
+            found.add(o.found);
+        }
+    };
+    /// Light of a lamp if nothing hides it.
+    [[nodiscard]] double expected_of(size_t cell, const camera::ListedTarget& target) const {
+        return double(target.chance) * double(grid_.lists[cell].light_nits);
+    }
+    [[nodiscard]] bool is_met(size_t cell, const camera::ListedTarget& target,
+                              const Found& of) const {
+        return of.counted > least_ * expected_of(cell, target);
+    }
+    [[nodiscard]] bool is_lamp(const camera::ListedTarget& target) const {
+        return !grid_.targets[target.number].image;
+    }
+    /// What all cells find at the targets of one, for so much of it as may see them.
+    [[nodiscard]] std::vector<Found> pooled_in(size_t cell, const camera::FilmCell& part) const {
+        std::vector<Found> out;
+        for (const camera::ListedTarget& target : grid_.lists[cell].targets) {
+            Found& found = out.emplace_back(found_[target.number]);
+            found.scale(found.share > 0 ? seen_share(target, part) / found.share : 0);
+        }
+        return out;
+    }
+    [[nodiscard]] Lamps lamps_of(size_t cell, const std::vector<Found>& pooled) const {
+        Lamps out;
+        each_lamp(cell, pooled, [&](const camera::ListedTarget& target, const Found& found) {
+            ++out.asked;
+            if (!is_met(cell, target, found)) return;
+            ++out.met, out.expected += expected_of(cell, target);
+            out.found.add(found), out.square += found.counted * found.counted / found.share;
+        });
+        return out;
+    }
+    template <class F>
+    void each_cell(const F& use) const {
+        camera::run_cells(camera::one_by_one, grid_.cells, [&](size_t n, V2i cell) {
+            use(n, grid_.cell(cell.x, cell.y, frame_px_));
+        });
+    }
+    /// Lamps of a cell to which rays were sent.
+    template <class F>
+    void each_lamp(size_t cell, const std::vector<Found>& pooled, const F& use) const {
+        const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
+        for (size_t k = 0; k < targets.size(); ++k)
+            if (is_lamp(targets[k]) && pooled[k].rays > 0) use(targets[k], pooled[k]);
+    }
+
     const camera::TargetGrid& grid_;
+    V2i frame_px_;
     std::vector<double> shares_;  ///< sums over the cells
     std::vector<Found> found_;
+    Lamps all_lamps_;
+    double least_ = 0;  ///< of a lamp that is met, as a share of what is expected of it
     double of_image_;
 };
 
@@ -393,6 +469,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
         for (const Found& sent : found[n].sent) mean += sent.counted;
         at_targets.add(n, found[n].sent);
     }
+    at_targets.finish();
     const double dark = kDark * mean / static_cast<double>(found.size());
     std::vector<CellChoice> cells(found.size());
     camera::run_cells(run, all->cells, [&](size_t n, V2i cell) {

@@ -169,6 +169,57 @@ TEST(Highlights, OfABallAreAstigmatic) {
     }
 }
 
+/// Along x, a metre long, through (0, 0, -1).
+Mesh bar(float radius_m) {
+    constexpr uint32_t kSides = 256;
+    Mesh out;
+    for (uint32_t i = 0; i < kSides; ++i) {
+        const float angle = 2 * kPi * float(i) / kSides;
+        const V3f normal(0, std::cos(angle), std::sin(angle));
+        for (const float x : {-0.5f, 0.5f}) {
+            out.positions.push_back(V3f(x, 0, -1) + radius_m * normal);
+            out.normals.push_back(normal);
+        }
+        const uint32_t a = 2 * i, b = 2 * ((i + 1) % kSides);
+        out.triangles.push_back({a, b, b + 1});
+        out.triangles.push_back({a, b + 1, a + 1});
+    }
+    return out;
+}
+
+// A thin bar stretches the image of a lamp a hundred times. Rays of the image, from any point of
+// the lens, are mirrored to the lamp by a cylinder, or nearly: the lens is wider than the bar.
+TEST(Highlights, OfAThinBarAreLong) {
+    constexpr float kThin_m = 0.01f, kReach_m = 0.01f;
+    World world;
+    place(world.scene, bar(kThin_m), mirror());
+    const V3f lamp(0.1f, 0.6f, 0.3f);
+    const auto found = seen_in(world, {lamp_at(lamp, kReach_m)});
+    ASSERT_EQ(found.size(), 1u);
+    ASSERT_TRUE(found[0].image);
+    const AstigmaticImage& image = *found[0].image;
+    const float most = image.place_per_m.most(),
+                least = std::fabs(image.place_per_m.determinant()) / most;
+    EXPECT_GT(most, 50 * least);
+    for (int i = 0; i < 16; ++i) {
+        const float angle = 0.4f * float(i), off_m = 0.019f * float(i % 4 + 1) / 4;
+        const V3f eye(off_m * std::cos(angle), off_m * std::sin(angle), 0);
+        V3f seen = unit(found[0].centre - eye);
+        for (int step = 0; step < 8; ++step) {
+            const V2f by = image.passes_m(V2f(seen.dot(image.x), seen.dot(image.y)));
+            seen = unit(found[0].centre + by.x * image.x + by.y * image.y - eye);
+        }
+        // Across the bar, in y and z.
+        const V2f from(eye.y, eye.z + 1), by(seen.y, seen.z);
+        const float along = -from.dot(by) / by.length2(),
+                    half = std::sqrt(sqr(kThin_m) - (from + along * by).length2()) / by.length();
+        const V3f at = eye + (along - half) * seen, normal = unit(V3f(0, at.y, at.z + 1)),
+                  mirrored = seen - 2 * seen.dot(normal) * normal;
+        const float to_lamp = (lamp - at).dot(mirrored);
+        EXPECT_LT((at + to_lamp * mirrored - lamp).length(), 2 * kReach_m) << i;
+    }
+}
+
 // One behind the other, as the lens sees them.
 TEST(Highlights, OfTwoLampsOnALineAreTwo) {
     World world;

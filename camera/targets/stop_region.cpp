@@ -92,8 +92,21 @@ void StopRegion::add(const Shape& shape) {
     areas_[shape.is_square] += shape.area;
 }
 
+// By eight points of its rim: the curvature is that of a square, and the ellipse may reach beyond.
+bool StopRegion::is_around(const LandingMap& map, const Shape& ellipse, float reach) {
+    constexpr float kHalf = 0.70710678f;
+    const f8 along{1, kHalf, 0, -kHalf, -1, -kHalf, 0, kHalf},
+        across{0, kHalf, 1, kHalf, 0, -kHalf, -1, -kHalf};
+    const Landings rim =
+        landings(map, ellipse.middle.x + along * ellipse.by_x.x + across * ellipse.by_y.x,
+                 ellipse.middle.y + along * ellipse.by_x.y + across * ellipse.by_y.y);
+    ++evaluations_;
+    return !any(rim.x * rim.x + rim.y * rim.y < reach * reach);
+}
+
 // The landing is off from its linear part by half the curvature times the distance squared.
-bool StopRegion::add_ellipse(V2f s, const Landings& at, int i, float reach, float curvature) {
+bool StopRegion::add_ellipse(const LandingMap& map, V2f s, const Landings& at, int i, float reach,
+                             float curvature) {
     const float a = at.x_by_s[i], b = at.x_by_t[i], c = at.y_by_s[i], d = at.y_by_t[i];
     const float det = a * d - b * c, least = at.stretch()[1][i];
     const float across = reach / least, bent = curvature * across * across / 2;
@@ -105,8 +118,15 @@ bool StopRegion::add_ellipse(V2f s, const Landings& at, int i, float reach, floa
         const V2f off = shapes_[k].middle - s;
         if (V2f(a * off.x + b * off.y, c * off.x + d * off.y).length() < kSame * reach) return true;
     }
-    add({s, V2f(d, -c) * (wide / det), V2f(-b, a) * (wide / det),
-         kPi_f * wide * wide / std::fabs(det), false, wide});
+    const Shape shape{s,
+                      V2f(d, -c) * (wide / det),
+                      V2f(-b, a) * (wide / det),
+                      kPi_f * wide * wide / std::fabs(det),
+                      false,
+                      wide,
+                      bent / (reach * reach)};
+    if (!is_around(map, shape, reach)) return false;
+    add(shape);
     return true;
 }
 
@@ -205,7 +225,7 @@ size_t StopRegion::find(const LandingMap& map, const Eight& eight, float half, L
             const V2f way(s[i], t[i]);
             const float away = (way - eight.middle(i)).length();
             if (there[i] && away < 2 * across + 1.5f * eight.reach[i] / least[i])
-                found[size_t(i)] = add_ellipse(way, now, i, eight.reach[i], eight.bend[i]);
+                found[size_t(i)] = add_ellipse(map, way, now, i, eight.reach[i], eight.bend[i]);
         }
     }
     size_t lefts = 0;
@@ -333,12 +353,12 @@ float StopRegion::density(V2f s) const {
 // The axes are those of a landing at `reach` in the map.
 void StopRegion::correct(size_t ellipse, V2f landing) {
     Shape& shape = shapes_[ellipse];
-    const float share = kCorrectedReach / shape.reach;
+    const float reach = kCorrectedReach + shape.bent, share = reach / shape.reach;
     shape.middle -= (shape.by_x * landing.x + shape.by_y * landing.y) / shape.reach;
     shape.by_x *= share, shape.by_y *= share;
     areas_[0] += shape.area * (share * share - 1);
     shape.area *= share * share;
-    shape.reach = kCorrectedReach;
+    shape.reach = reach;
 }
 
 }  // namespace petzval::camera

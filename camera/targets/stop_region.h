@@ -122,6 +122,9 @@ class StopRegion {
         float area;
         bool is_square;
         float reach;  ///< of an ellipse: landing at its rim, in radii
+        /// Of an ellipse: what a landing is off from a straight one, in radii, a radius from the
+        /// middle.
+        float bent = 0;
 
         [[nodiscard]] bool contains(V2f) const;
     };
@@ -140,7 +143,9 @@ class StopRegion {
     }
     [[nodiscard]] size_t find(const LandingMap&, const Eight&, float half, LeftSquare* left);
     [[nodiscard]] bool is_covered(V2f middle, float half, size_t by_first) const;
-    [[nodiscard]] bool add_ellipse(V2f s, const Landings&, int lane, float reach, float curvature);
+    [[nodiscard]] bool add_ellipse(const LandingMap&, V2f s, const Landings&, int lane, float reach,
+                                   float curvature);
+    [[nodiscard]] bool is_around(const LandingMap&, const Shape& ellipse, float reach);
 
     std::array<Shape, kMost> shapes_;
     size_t count_ = 0;

@@ -241,8 +241,9 @@ Finding search_for_targets() {
         kNear);
     f.table.columns = {"lens",         "focus",          "of the circle",
                        "distance (m)", "rays that pass", "not found"};
+    int hits = 0, missed = 0;
     double worst = 0;
-    std::string name;
+    std::string name = "no lens";
     for (const io::LensSummary& summary : io::list_lenses())
         for (const bool near : {false, true}) {
             const auto lens = shipped(summary.name, near);
@@ -251,14 +252,14 @@ Finding search_for_targets() {
                 const Missed m = missed_by(*lens, of_circle);
                 add_row(f, summary.name, near ? "near" : "as it ships", of_circle, m.away_m, m.hits,
                         m.hits > 0 ? percent(m.share()) : "");
+                hits += m.hits, missed += m.missed;
                 if (m.hits > 100 && m.share() > worst) worst = m.share(), name = summary.name;
             }
         }
     f.where = fmt::format(
-        "Regions cover all ways on which light gets from a target to a film point. Of the rays "
-        "that pass a target, {} lie in none at worst ({}): where polynomials end, at the rims of "
-        "pupils",
-        percent(worst), name);
+        "Regions cover all ways on which light gets from a target to a film point. Of {} rays that "
+        "pass a target {} lie in none; at worst {} of those of a lens and a place ({})",
+        hits, missed, percent(worst), name);
     f.instead =
         "What no region holds is left to ordinary rays, with their whole weight: bright single "
         "pixels at the rims of discs. The mean is right. Targets that are sharp draw the film "

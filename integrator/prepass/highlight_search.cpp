@@ -14,8 +14,8 @@ namespace {
 constexpr float kAlphas = 1.5f;
 /// Largest half-width of an image that is looked for, as the lens sees it, radians.
 constexpr float kMostAngle = 0.05f;
-/// Long side of an image over its short one: a thin cylinder has a hundred.
-constexpr float kMostStretched = 300;
+/// Long side of an image over its short one: in a bar it is the distance over the radius, or so.
+constexpr float kMostStretched = 1000;
 /// Half-widths from the middle of the highlight at which it is found.
 constexpr float kTolerance = 0.02f;
 constexpr int kMostSteps = 12;

@@ -20,9 +20,13 @@ constexpr double kSent = 48, kMostSent = 12;
 /// Rays to an image, over all cells: surfaces send few of them on to the lamp. And of all images
 /// together for a pixel.
 constexpr double kSentToImage = 96, kMostToImages = 1. / 8;
-/// Share of the light expected of a lamp from which on the pilot has met it; and share below which
-/// one that it has not met is left out.
-constexpr double kMet = 0.05, kLeastSeen = 1e-3;
+/// Share of a lamp's radiance from which on a ray has met it, through dark glass or a lens; and
+/// share of its light below which one that no ray met is left out.
+constexpr double kMet = 1e-3, kLeastSeen = 1e-3;
+/// Hits from which on what a lamp brings is known.
+constexpr uint32_t kManyHits = 8;
+/// Lamps of a cell from which on all are hidden where none is met: a wall stands before them.
+constexpr double kAloneInCell = 3;
 /// Pixels of a cell for each ordinary sample, of which there are at least so many.
 constexpr uint32_t kPixelsPerSample = 32, kFewest = 2;
 /// Ratio of the frame's efforts that is worth it. Few samples of a cell know them badly, and what
@@ -50,8 +54,9 @@ struct Found {
     double whole2 = 0;                 ///< square of ordinary rays in the same direction
     double cost = 0;
     double share = 0;  ///< of the cell whose film points these are; a sum of them for several cells
-    double seen = 1;   ///< chance that the target is seen at all
-    uint32_t rays = 0;  ///< that found it
+    double seen = 1;   ///< share of the target's light that may be expected
+    uint32_t rays = 0;  ///< that were sent
+    uint32_t hits = 0;  ///< of them, that met it
 
     void add(double whole, double weight) {
         counted += weight * whole;
@@ -60,13 +65,21 @@ struct Found {
     }
     void add(const Found& o) {
         counted += o.counted, counted2 += o.counted2, whole2 += o.whole2, cost += o.cost;
-        share += o.share, rays += o.rays;
+        share += o.share, rays += o.rays, hits += o.hits;
     }
     void scale(double by) { counted *= by, counted2 *= by, whole2 *= by, cost *= by, share *= by; }
     /// What a target's light adds to the variance of ordinary rays, however seldom they meet it: by
     /// the shares of the rays that are sent to it.
     [[nodiscard]] double spread() const { return std::max(0., whole2 - counted * counted); }
 };
+
+/// Light of a target, at film points that may see it, if nothing hides it; and its radiance, nits.
+double light_of(const camera::TargetCell& cell, const camera::ListedTarget& target) {
+    return double(target.chance) * double(cell.light_nits);
+}
+double radiance_of(const camera::TargetCell& cell, const camera::ListedTarget& target) {
+    return light_of(cell, target) / double(target.met);
+}
 
 struct CellFound {
     Found ordinary;
@@ -113,8 +126,9 @@ class CellPilot {
                                                         to ? path.mis_weight : 1.f},
                                                        bands[i], points[i].sampler, none, stats);
                 }
-                out.add(std::fabs(double(luminance(to_rgb(light, bands[i])))),
-                        double(paths[i][0].mis_weight));
+                const double found = std::fabs(double(luminance(to_rgb(light, bands[i]))));
+                out.add(found, double(paths[i][0].mis_weight));
+                out.hits += to && found > kMet * radiance_of(*to, to->targets[0]);
             }
         }
         out.cost = steps(stats);
@@ -142,20 +156,22 @@ double seen_share(const camera::ListedTarget& target, const camera::FilmCell& ce
     return double(target.seen_from.within(cell).area() / cell.area());
 }
 
-/// A lamp that none of some rays met.
-struct Missed {
+/// A lamp that few or none of some rays met.
+struct Likely {
     double seen;   ///< chance that it is seen at all
     double share;  ///< of it that is seen, where it is
 };
 
 /// What is known of it (Bayes). seen: its chance before, half of which is that only a share is
-/// seen, any as likely; hits: share of the rays that meet one which is wholly seen.
-Missed missed_by(uint32_t rays, double seen, double hits) {
-    const double n = rays, none = std::pow(1 - hits, n),
-                 // Integrals over the share s of (1 - hits s)^n, and of s times it.
-        partly = (1 - none * (1 - hits)) / (hits * (n + 1)),
-                 of_share = (1 - none * (1 - hits) * (1 + (n + 1) * hits)) /
-                            (hits * hits * (n + 1) * (n + 2)),
+/// seen, any as likely; hit: chance that a ray meets one which is wholly seen.
+Likely likely_of(uint32_t hits, uint32_t rays, double seen, double hit) {
+    const double n = rays;
+    if (hits > 0) return {1, std::min(1., (hits + 1) / ((n + 2) * hit))};
+    const double none = std::pow(1 - hit, n),
+                 // Integrals over the share s of (1 - hit s)^n, and of s times it.
+        partly = (1 - none * (1 - hit)) / (hit * (n + 1)),
+                 of_share =
+                     (1 - none * (1 - hit) * (1 + (n + 1) * hit)) / (hit * hit * (n + 1) * (n + 2)),
                  missed = seen * (none + partly);
     return {missed / (missed + 2 * (1 - seen)), (none + of_share) / (none + partly)};
 }
@@ -193,72 +209,63 @@ class PooledTargets {
         const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
         for (size_t k = 0; k < sent.size(); ++k) found_[targets[k].number].add(sent[k]);
     }
-    /// Learns what a lamp that is met brings; once, when all cells are there.
+    /// Adds up what the lamps bring that were met; once, when all cells are there.
     void finish() {
-        double light = 0, expected = 0;
-        each_cell([&](size_t n, const camera::FilmCell& part) {
-            const std::vector<Found> pooled = pooled_in(n, part);
-            each_lamp(n, pooled, [&](const camera::ListedTarget& target, const Found& found) {
-                light += found.counted, expected += double(expected_of(n, target));
-            });
-        });
-        if (!(expected > 0)) return;
-        least_ = kMet * light / expected;
         each_cell([&](size_t n, const camera::FilmCell& part) {
             all_lamps_.add(lamps_of(n, pooled_in(n, part)));
         });
     }
     /// What a cell may expect of each of its targets. Few rays are sent to one of hundreds of
-    /// lamps, and none may have met it. Of such a lamp is expected what the others bring, by the
-    /// chance that it is seen (Bayes): where most lamps were met it is likely, where most were not
-    /// it is hidden.
+    /// lamps, and none may have met it. Of such a lamp is expected what others bring that were met,
+    /// in this cell, or in all where it is about alone, by the chance that it is seen (Bayes):
+    /// where most of the cell were met it is likely, where most were not it is hidden.
     [[nodiscard]] std::vector<Found> in_cell(size_t cell, const camera::FilmCell& part) const {
-        const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
+        const camera::TargetCell& list = grid_.lists[cell];
         std::vector<Found> out = pooled_in(cell, part);
         const Lamps here = lamps_of(cell, out), &lamps = here.met > 0 ? here : all_lamps_;
-        if (lamps.met == 0) return out;
-        // Of all rays to lamps those that meet them, as they bring about the same. Half of it: some
-        // lamps are met less than others.
-        const double hits = std::min(lamps.square / lamps.found.counted2, 1.) / 2,
+        if (lamps.met == 0 || (here.met == 0 && here.asked > kAloneInCell)) return out;
+        // Half of the share of rays that meet a lamp: some are met less than others.
+        const double hits = lamps.found.hits / (2. * lamps.found.rays),
                      seen = (here.met + 1) / (here.asked + 2);
-        for (size_t k = 0; k < targets.size(); ++k) {
+        for (size_t k = 0; k < out.size(); ++k) {
+            const camera::ListedTarget& target = list.targets[k];
             const uint32_t rays = out[k].rays;
-            if (!is_lamp(targets[k]) || (rays > 0 && is_met(cell, targets[k], out[k]))) continue;
-            Found expected = lamps.found;
-            expected.scale(expected_of(cell, targets[k]) / lamps.expected);
-            const Missed missed = missed_by(rays, seen, hits);
-            expected.seen = missed.seen * missed.share;
-            if (expected.seen < kLeastSeen) expected.seen = 0;
-            expected.scale(expected.seen);
-            // Noise counts by its mean: a lamp that is seen half of the time makes half of it.
-            expected.counted2 *= missed.seen, expected.whole2 *= missed.seen;
-            expected.cost =
-                rays > 0 ? out[k].cost
-                         : lamps.found.cost / lamps.found.share * seen_share(targets[k], part);
+            if (!is_lamp(target) || out[k].hits >= kManyHits) continue;
+            const double share = seen_share(target, part);
+            const Likely likely = likely_of(out[k].hits, rays, seen, hits);
+            Found expected;
+            expected.seen = likely.seen * likely.share;
+            if (!(expected.seen >= kLeastSeen)) expected.seen = 0;
+            // Moments go by the light: of rays to the lamp, and of ordinary ones that meet it.
+            // Noise counts by its mean: a lamp that is there half of the time makes half of it.
+            const double light = lamps.found.counted / lamps.light * share * light_of(list, target),
+                         noise = light * likely.seen * expected.seen;
+            expected.counted = light * expected.seen;
+            if (share > 0)
+                expected.counted2 = lamps.found.counted2 / lamps.square * noise * light / share;
+            expected.whole2 = lamps.found.whole2 / lamps.whole * noise * radiance_of(list, target);
+            // Few hits know it badly, and low.
+            if (out[k].hits > 0 && expected.whole2 <= out[k].whole2) continue;
+            expected.cost = rays > 0 ? out[k].cost : lamps.found.cost / lamps.found.share * share;
             out[k] = expected;
         }
         return out;
     }
 
   private:
-    /// Lamps to which rays were sent, and what those bring that were met.
+    /// Lamps to which rays were sent, and what those bring that were met. Sums: of the light if
+    /// nothing hides them; of what they bring, squared over their share of the cell; and of it
+    /// times their radiance.
     struct Lamps {
-        double asked = 0, met = 0, expected = 0, square = 0;
+        double asked = 0, met = 0, light = 0, square = 0, whole = 0;
         Found found;
 
         void add(const Lamps& o) {
-            asked += o.asked, met += o.met, expected += o.expected, square += o.square;
+            asked += o.asked, met += o.met, light += o.light, square += o.square;
+            whole += o.whole;
             found.add(o.found);
         }
     };
-    /// Light of a lamp if nothing hides it.
-    [[nodiscard]] double expected_of(size_t cell, const camera::ListedTarget& target) const {
-        return double(target.chance) * double(grid_.lists[cell].light_nits);
-    }
-    [[nodiscard]] bool is_met(size_t cell, const camera::ListedTarget& target,
-                              const Found& of) const {
-        return of.counted > least_ * expected_of(cell, target);
-    }
     [[nodiscard]] bool is_lamp(const camera::ListedTarget& target) const {
         return !grid_.targets[target.number].image;
     }
@@ -272,13 +279,19 @@ class PooledTargets {
         return out;
     }
     [[nodiscard]] Lamps lamps_of(size_t cell, const std::vector<Found>& pooled) const {
+        const camera::TargetCell& list = grid_.lists[cell];
         Lamps out;
-        each_lamp(cell, pooled, [&](const camera::ListedTarget& target, const Found& found) {
+        for (size_t k = 0; k < pooled.size(); ++k) {
+            const camera::ListedTarget& target = list.targets[k];
+            const Found& found = pooled[k];
+            if (!is_lamp(target) || found.rays == 0) continue;
             ++out.asked;
-            if (!is_met(cell, target, found)) return;
-            ++out.met, out.expected += expected_of(cell, target);
-            out.found.add(found), out.square += found.counted * found.counted / found.share;
-        });
+            if (found.hits == 0 || !(found.share > 0)) continue;
+            ++out.met, out.light += found.share * light_of(list, target);
+            out.square += found.counted * found.counted / found.share;
+            out.whole += found.counted * radiance_of(list, target);
+            out.found.add(found);
+        }
         return out;
     }
     template <class F>
@@ -287,20 +300,12 @@ class PooledTargets {
             use(n, grid_.cell(cell.x, cell.y, frame_px_));
         });
     }
-    /// Lamps of a cell to which rays were sent.
-    template <class F>
-    void each_lamp(size_t cell, const std::vector<Found>& pooled, const F& use) const {
-        const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
-        for (size_t k = 0; k < targets.size(); ++k)
-            if (is_lamp(targets[k]) && pooled[k].rays > 0) use(targets[k], pooled[k]);
-    }
 
     const camera::TargetGrid& grid_;
     V2i frame_px_;
     std::vector<double> shares_;  ///< sums over the cells
     std::vector<Found> found_;
     Lamps all_lamps_;
-    double least_ = 0;  ///< of a lamp that is met, as a share of what is expected of it
     double of_image_;
 };
 
@@ -333,7 +338,7 @@ struct Effort {
 struct CellChoice {
     std::vector<size_t> order;
     std::vector<double> roots;    ///< of the mean square of what each target brings
-    std::vector<double> seen;     ///< chance that each is seen
+    std::vector<double> seen;     ///< share of each one's light that may be expected
     std::vector<Effort> efforts;  ///< with none, and for each number of targets and of rays
     size_t taken = 0;
 };
@@ -458,6 +463,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
             if (rays == 0) continue;
             camera::TargetCell alone{all->lists[n].map, {target}};
             alone.targets[0].chance = 1;
+            alone.light_nits = static_cast<float>(light_of(all->lists[n], target));
             sent = pilot.samples(cell, target.seen_from.within(part), begin, rays, &alone);
             begin += rays;
             sent.scale(share);
@@ -488,6 +494,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
         camera::TargetCell& kept = out->lists.emplace_back();
         const auto [noise, cost, rays, targets] = cell.efforts[cell.taken];
         if (targets > 0) kept.map = from.map;
+        kept.light_nits = from.light_nits;
         kept.rays = rays;
         double sum = 0, seen = 0;
         for (size_t n = 0; n < targets; ++n)

@@ -23,6 +23,9 @@ constexpr float kSame = 0.2f;
 /// Curvature within a square over the one that its quarters show.
 constexpr float kBendMargin = 1.5f;
 constexpr int kSteps = 3;
+/// Share of a distance that rounding may take: where the map is straight, an ellipse's rim is at
+/// it.
+constexpr float kInRounding = 0.99f;
 /// Distance from a target's middle, in its radii, at which a ray is there.
 constexpr float kThere = 0.05f;
 constexpr float kRoot2 = 1.41421356f;
@@ -101,7 +104,7 @@ bool StopRegion::is_around(const LandingMap& map, const Shape& ellipse, float re
         landings(map, ellipse.middle.x + along * ellipse.by_x.x + across * ellipse.by_y.x,
                  ellipse.middle.y + along * ellipse.by_x.y + across * ellipse.by_y.y);
     ++evaluations_;
-    return !any(rim.x * rim.x + rim.y * rim.y < reach * reach);
+    return !any(rim.x * rim.x + rim.y * rim.y < sqr(kInRounding * reach));
 }
 
 // The landing is off from its linear part by half the curvature times the distance squared.

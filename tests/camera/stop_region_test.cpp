@@ -203,6 +203,32 @@ TEST(StopRegions, HoldRaysBesideCaustics) {
     EXPECT_GT(rays, 10000);
 }
 
+// Where the map is straight one ellipse does, however small the target: strips would be larger.
+TEST(StopRegions, OfTinyTargetsAreOneEllipse) {
+    const StopCamera thin = std::make_shared<const ThinLensCamera>(
+        ThinLens{M44f(), 0.47f, 1.5f, Iris(Disk{}, 18), 1.f});
+    const FilmCell cell = test::cell_about(V2f(0.4f, 0.6f), kStop_px);
+    const auto map = StopMap::of(thin, cell);
+    ASSERT_TRUE(map);
+    const Pose& pose = pose_of(thin);
+    Random random(7);
+    for (int i = 0; i < 200; ++i) {
+        const V2f film = in_cell(cell, random.next2());
+        std::array<StopPoint, 8> points;
+        points.fill({film, map->stop_mm(uniform_disk(random.next2()) * 0.8f), kMiddle_nm});
+        const StopRay ray = rays_through(thin, points)[0];
+        const double away_m = 2 + 20 * double(random.next());
+        const V3d at = ray.origin_m + away_m * ray.direction.normalized();
+        const float radius_m = float(away_m) * std::pow(10.f, -5 + 1.5f * random.next());
+        const auto listed = list_target({pose.origin + pose.to_world(V3f(at)), radius_m}, *map,
+                                        pose, kStop_px, iris_area_mm2(thin));
+        ASSERT_TRUE(listed);
+        const StopRegion region(*map, map->rays(film, kMiddle_nm), *listed);
+        ASSERT_EQ(region.size(), 1u) << away_m << ' ' << radius_m;
+        EXPECT_TRUE(region.is_ellipse(0)) << away_m << ' ' << radius_m;
+    }
+}
+
 // A region's points are drawn with the density that it says: over the plane it comes to 1, and its
 // inverse, over points that are drawn, to the area that has a density.
 TEST(StopRegions, DrawTheirPointsByTheirDensity) {

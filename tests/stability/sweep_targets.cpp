@@ -216,8 +216,8 @@ Finding rays_to_targets() {
         "The variance does not depend on the lamp's size: {} for 0.1 m, {} for a millimetre, where "
         "ordinary rays have 1 / share; in focus, where the millimetre is {} pixels wide, it "
         "is {}. From a focus of {} m on, until it is sharp, a lamp of 10 mm at {:g} m is "
-        "passed by a quarter of the rays and is no target. One lamp of {} that is no target brings "
-        "the variance back: {} in place of {}",
+        "passed by a quarter of the rays and is no target. Of {} lamps one is "
+        "no target: {} in place of {}",
         number(sent_to(0.1, 1.4, 1).variance), number(sent_to(0.001, 1.4, 1).variance),
         number(1e-3 * kFrame_px.y / (2 * kAway_m * std::tan(0.47 / 2))),
         number(sent_to(0.001, 1.4, kAway_m).variance), number(in_focus), kAway_m, kRoom + 1,
@@ -243,7 +243,7 @@ Finding search_for_targets() {
                        "distance (m)", "rays that pass", "not found"};
     int hits = 0, missed = 0;
     double worst = 0;
-    std::string name = "no lens";
+    std::string name;
     for (const io::LensSummary& summary : io::list_lenses())
         for (const bool near : {false, true}) {
             const auto lens = shipped(summary.name, near);
@@ -258,8 +258,9 @@ Finding search_for_targets() {
         }
     f.where = fmt::format(
         "Regions cover all ways on which light gets from a target to a film point. Of {} rays that "
-        "pass a target {} lie in none; at worst {} of those of a lens and a place ({})",
-        hits, missed, percent(worst), name);
+        "pass a target {} lie in none",
+        hits, missed);
+    if (missed > 0) f.where += fmt::format("; at worst {} for {}", percent(worst), name);
     f.instead =
         "What no region holds is left to ordinary rays, with their whole weight: bright single "
         "pixels at the rims of discs. The mean is right. Targets that are sharp draw the film "

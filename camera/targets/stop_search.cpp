@@ -2,12 +2,10 @@
 #include "camera/targets/stop_search.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "core/sampling/warp.h"
 
 namespace petzval::camera {
-
 namespace {
 
 /// Distance from a target's middle, in its radii, from which on a straight step may miss it; and
@@ -41,36 +39,40 @@ void correct(const StopCamera& camera, std::span<StopSearch> searches) {
         StopSearch* of;
         size_t shape;
     };
-    std::vector<Ellipse> left;
-    for (StopSearch& search : searches)
-        for (size_t shape = 0; shape < search.region.size(); ++shape)
-            // Beyond the disc the map is not known well enough to lead anywhere near.
-            if (search.region.is_ellipse(shape) && !(search.region.middle(shape).length() > 1))
-                left.push_back({&search, shape});
+    std::array<Ellipse, 8> batch;
+    size_t count = 0;
     // A middle that was far off is moved by a straight step, and looked at once more.
-    for (int round = 0; round < kCorrections && !left.empty(); ++round) {
-        std::vector<Ellipse> far;
-        for (size_t first = 0; first < left.size(); first += 8) {
-            const size_t count = std::min(left.size() - first, size_t{8});
+    const auto trace = [&] {
+        for (int round = 0; round < kCorrections && count > 0; ++round) {
             std::array<TargetView, 8> views;
             std::array<V2f, 8> stop_mm;
             std::array<std::optional<V2f>, 8> landed;
             for (size_t i = 0; i < count; ++i) {
-                const auto& [search, shape] = left[first + i];
-                views[i] = search->view;
-                stop_mm[i] = search->view.map->stop_mm(search->region.middle(shape));
+                views[i] = batch[i].of->view;
+                stop_mm[i] = views[i].map->stop_mm(batch[i].of->region.middle(batch[i].shape));
             }
             trace_landings(camera, {views.data(), count}, {stop_mm.data(), count},
                            {landed.data(), count});
+            size_t far = 0;
             for (size_t i = 0; i < count; ++i) {
                 if (!landed[i]) continue;
-                const Ellipse& ellipse = left[first + i];
-                ellipse.of->region.correct(ellipse.shape, *landed[i]);
-                if (landed[i]->length() > kFar) far.push_back(ellipse);
+                batch[i].of->region.correct(batch[i].shape, *landed[i]);
+                if (landed[i]->length() > kFar) batch[far++] = batch[i];
             }
+            count = far;
         }
-        left = std::move(far);
+        count = 0;
+    };
+    for (StopSearch& search : searches) {
+        for (size_t shape = 0; shape < search.region.size(); ++shape) {
+            // Beyond the disc the map is not known well enough to lead anywhere near.
+            if (!search.region.is_ellipse(shape) || search.region.middle(shape).length() > 1)
+                continue;
+            batch[count++] = {&search, shape};
+            if (count == batch.size()) trace();
+        }
     }
+    trace();
 }
 
 FilmEllipse::FilmEllipse(const TargetView& view, V2f frame_px, V2f stop_mm, V2f landing)

@@ -47,7 +47,6 @@ std::vector<Seen> cameras() {
             {"double Gauss", lens(test::kGauss, 8), V2f(0.3f, 0.4f), 1.3f},
             {"fisheye", lens(test::kFisheye), corner, 2},
             {"anamorphic", lens("schneider-anamorphic-31mm"), V2f(0.06f, 0.95f), 2},
-            // Far from their focus, with much spherical aberration: curved ways beside caustics.
             {"singlet", folded_singlet(), middle, 1}};
 }
 

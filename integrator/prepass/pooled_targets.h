@@ -27,7 +27,7 @@ inline constexpr uint32_t kManyHits = 8;
 /// Lamps of a cell from which on all are hidden where none is met: a wall stands before them.
 inline constexpr double kAloneInCell = 3;
 /// Means over the samples of cells, or over the rays to one of their targets. Luminance.
-struct Found {
+struct PilotFound {
     double counted = 0, counted2 = 0;  ///< what the shares leave, and its square
     double whole2 = 0;                 ///< square of ordinary rays in the same direction
     double cost = 0;
@@ -41,7 +41,7 @@ struct Found {
         counted2 += weight * whole * weight * whole;
         whole2 += weight * whole * whole;
     }
-    void add(const Found& o) {
+    void add(const PilotFound& o) {
         counted += o.counted, counted2 += o.counted2, whole2 += o.whole2, cost += o.cost;
         share += o.share, rays += o.rays, hits += o.hits;
     }
@@ -113,7 +113,7 @@ class PooledTargets {
         return static_cast<uint32_t>(rays + double(to_unit_float(drawn)));
     }
     /// Adds what a cell finds at the targets of its list.
-    void add(size_t cell, const std::vector<Found>& sent) {
+    void add(size_t cell, const std::vector<PilotFound>& sent) {
         const std::vector<camera::ListedTarget>& targets = grid_.lists[cell].targets;
         for (size_t k = 0; k < sent.size(); ++k) found_[targets[k].number].add(sent[k]);
     }
@@ -127,9 +127,9 @@ class PooledTargets {
     /// lamps, and none may have met it. Of such a lamp is expected what others bring that were met,
     /// in this cell, or in all where it is about alone, by the chance that it is seen (Bayes):
     /// where most of the cell were met it is likely, where most were not it is hidden.
-    [[nodiscard]] std::vector<Found> in_cell(size_t cell, const camera::FilmCell& part) const {
+    [[nodiscard]] std::vector<PilotFound> in_cell(size_t cell, const camera::FilmCell& part) const {
         const camera::TargetCell& list = grid_.lists[cell];
-        std::vector<Found> out = pooled_in(cell, part);
+        std::vector<PilotFound> out = pooled_in(cell, part);
         const Lamps here = lamps_of(cell, out), &lamps = here.met > 0 ? here : all_lamps_;
         if (lamps.met == 0 || (here.met == 0 && here.asked > kAloneInCell)) return out;
         // Half of the share of rays that meet a lamp: some are met less than others.
@@ -141,7 +141,7 @@ class PooledTargets {
             if (!is_lamp(target) || out[k].hits >= kManyHits) continue;
             const double share = seen_share(target, part);
             const Likely likely = likely_of(out[k].hits, rays, seen, hits);
-            Found expected;
+            PilotFound expected;
             expected.seen = likely.seen * likely.share;
             if (!(expected.seen >= kLeastSeen)) expected.seen = 0;
             // Moments go by the light: of rays to the lamp, and of ordinary ones that meet it.
@@ -166,7 +166,7 @@ class PooledTargets {
     /// times their radiance.
     struct Lamps {
         double asked = 0, met = 0, light = 0, square = 0, whole = 0;
-        Found found;
+        PilotFound found;
 
         void add(const Lamps& o) {
             asked += o.asked, met += o.met, light += o.light, square += o.square;
@@ -178,20 +178,21 @@ class PooledTargets {
         return !grid_.targets[target.number].image;
     }
     /// What all cells find at the targets of one, for so much of it as may see them.
-    [[nodiscard]] std::vector<Found> pooled_in(size_t cell, const camera::FilmCell& part) const {
-        std::vector<Found> out;
+    [[nodiscard]] std::vector<PilotFound> pooled_in(size_t cell,
+                                                    const camera::FilmCell& part) const {
+        std::vector<PilotFound> out;
         for (const camera::ListedTarget& target : grid_.lists[cell].targets) {
-            Found& found = out.emplace_back(found_[target.number]);
+            PilotFound& found = out.emplace_back(found_[target.number]);
             found.scale(found.share > 0 ? seen_share(target, part) / found.share : 0);
         }
         return out;
     }
-    [[nodiscard]] Lamps lamps_of(size_t cell, const std::vector<Found>& pooled) const {
+    [[nodiscard]] Lamps lamps_of(size_t cell, const std::vector<PilotFound>& pooled) const {
         const camera::TargetCell& list = grid_.lists[cell];
         Lamps out;
         for (size_t k = 0; k < pooled.size(); ++k) {
             const camera::ListedTarget& target = list.targets[k];
-            const Found& found = pooled[k];
+            const PilotFound& found = pooled[k];
             if (!is_lamp(target) || found.rays == 0) continue;
             ++out.asked;
             if (found.hits == 0 || !(found.share > 0)) continue;
@@ -212,7 +213,7 @@ class PooledTargets {
     const camera::TargetGrid& grid_;
     V2i frame_px_;
     std::vector<double> shares_;  ///< sums over the cells
-    std::vector<Found> found_;
+    std::vector<PilotFound> found_;
     Lamps all_lamps_;
     double of_image_;
 };

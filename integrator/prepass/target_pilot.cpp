@@ -38,8 +38,8 @@ double steps(const PathStats& s) {
 }
 
 struct CellFound {
-    Found ordinary;
-    std::vector<Found> sent;  ///< to each target
+    PilotFound ordinary;
+    std::vector<PilotFound> sent;  ///< to each target
 };
 
 class CellPilot {
@@ -49,9 +49,9 @@ class CellPilot {
 
     /// Samples of even points of a part of the film, which are drawn for a place of the frame, from
     /// a first one on; to: a target, or none for ordinary ones.
-    [[nodiscard]] Found samples(V2i drawn_for, const camera::FilmCell& part, uint32_t begin,
-                                uint32_t count, const camera::TargetCell* to) const {
-        Found out;
+    [[nodiscard]] PilotFound samples(V2i drawn_for, const camera::FilmCell& part, uint32_t begin,
+                                     uint32_t count, const camera::TargetCell* to) const {
+        PilotFound out;
         PathStats stats;
         for (uint32_t first = 0; first < count; first += camera::kMostFilmPoints) {
             std::array<camera::FilmPoint, camera::kMostFilmPoints> points;
@@ -150,9 +150,9 @@ CellChoice choice_of(const camera::TargetCell& cell, const camera::FilmCell& par
     std::stable_sort(out.order.begin(), out.order.end(), [&](size_t a, size_t b) {
         return found.sent[a].spread() > found.sent[b].spread();
     });
-    const Found& ordinary = found.ordinary;
+    const PilotFound& ordinary = found.ordinary;
     double mean = ordinary.counted, rest = ordinary.spread();
-    for (const Found& sent : found.sent) {
+    for (const PilotFound& sent : found.sent) {
         out.roots.push_back(std::sqrt(sent.counted2));
         out.seen.push_back(sent.seen);
         mean += sent.counted, rest += sent.spread();
@@ -169,7 +169,7 @@ CellChoice choice_of(const camera::TargetCell& cell, const camera::FilmCell& par
     size_t targets_taken = 0;
     for (const size_t k : out.order) {
         ++targets_taken;
-        const Found& sent = found.sent[k];
+        const PilotFound& sent = found.sent[k];
         rest -= sent.spread();
         const double search =
             kSentCost + kEvaluationCost * static_cast<double>(cell.targets[k].search);
@@ -255,7 +255,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
         found[n].ordinary = pilot.samples(cell, part, 0, count, nullptr);
         uint32_t begin = count;
         for (const camera::ListedTarget& target : all->lists[n].targets) {
-            Found& sent = found[n].sent.emplace_back();
+            PilotFound& sent = found[n].sent.emplace_back();
             const double share = seen_share(target, part);
             const uint32_t rays = share > 0 ? at_targets.rays_from(n, target, share) : 0;
             if (rays == 0) continue;
@@ -270,7 +270,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
     double mean = 0;
     for (size_t n = 0; n < found.size(); ++n) {
         mean += found[n].ordinary.counted;
-        for (const Found& sent : found[n].sent) mean += sent.counted;
+        for (const PilotFound& sent : found[n].sent) mean += sent.counted;
         at_targets.add(n, found[n].sent);
     }
     at_targets.finish();

@@ -170,10 +170,10 @@ SmallFeature sun() {
     return out;
 }
 
-struct Estimate {
+struct LightEstimate {
     double mean = 0, variance = 0;
 };
-Estimate light_at(const Camera& camera, V2f film, uint32_t count) {
+LightEstimate light_at(const Camera& camera, V2f film, uint32_t count) {
     double sum = 0, squares = 0;
     for (uint32_t i = 0; i < count; ++i) {
         double light = 0;
@@ -241,8 +241,8 @@ TEST(DiffractionCamera, StarsHaveTheirLightWithDrawsTowardsLampsAndLoseTheirNois
         }
         exact *= std::numbers::pi * double(disc.x * disc.y);
         constexpr uint32_t count = 1 << 16;
-        const Estimate with = light_at(aimed, film, count),
-                       without = light_at(plain, film, 4 * count);
+        const LightEstimate with = light_at(aimed, film, count),
+                            without = light_at(plain, film, 4 * count);
         EXPECT_NEAR(with.mean, exact, 4.5 * std::sqrt(with.variance) + 0.01 * exact) << film;
         // The rare draws that meet the sun bring the light of four lanes each.
         const double rare = std::sqrt(4 * exact / (4. * count));

@@ -37,7 +37,7 @@ struct Setup {
     double stop_scale = 1;  ///< of the filed radius
 };
 
-LensCameraInput input_of(const std::string& name, const Setup& setup = {}) {
+LensCameraInput oracle_input(const std::string& name, const Setup& setup = {}) {
     const auto lens = std::make_shared<const Lens>(read_lens(name));
     const double radius =
         lens->prescription().surfaces[size_t(lens->stop())].semi_diameter_mm * setup.stop_scale;
@@ -151,7 +151,7 @@ V2f at_azimuth(double mm, double degrees) {
 
 TEST(LensCamera, IrradianceIsTheOracles) {
     for (const std::string name : test::kOracleLenses) {
-        const LensCamera camera(input_of(name));
+        const LensCamera camera(oracle_input(name));
         const auto table = read_oracle(name).at("irradiance");
         ASSERT_FALSE(table.empty());
         for (const auto& row : table) {
@@ -167,7 +167,7 @@ TEST(LensCamera, IrradianceIsTheOracles) {
 TEST(LensCamera, IrradianceOnTheAxisIsPiSineSquared) {
     for (const std::string name : test::kOracleLenses) {
         if (name == kAnamorphic) continue;
-        const LensCameraInput in = input_of(name);
+        const LensCameraInput in = oracle_input(name);
         const Lens& lens = *in.lens;
         double passes = 0, fails = 1;
         while (fails - passes > 1e-9) {
@@ -194,7 +194,7 @@ TEST(LensCamera, ARoundIrisIsTheSameAtEveryAzimuth) {
     const std::string fisheye = "minolta-fisheye-16mm-f2.8";
     for (const auto& [name, height, scale] :
          {std::tuple(kTakumar, 12., 1.), {kTakumar, 12., 0.4}, {fisheye, 19., 1.}}) {
-        const LensCameraInput in = input_of(name, {.stop_scale = scale});
+        const LensCameraInput in = oracle_input(name, {.stop_scale = scale});
         const LensCamera camera(in);
         const double expected = quadrature(in, V2f(0, float(height)));
         for (const double azimuth : {0., 37., 90., 143., 200., 311.})
@@ -209,7 +209,7 @@ TEST(LensCamera, OtherShapesAreAsQuadratureSays) {
         for (size_t i = 0; i < std::size(shapes); ++i)
             for (const double scale : {1., 0.4}) {
                 const LensCameraInput in =
-                    input_of(name, {.shape = shapes[i], .stop_scale = scale});
+                    oracle_input(name, {.shape = shapes[i], .stop_scale = scale});
                 const LensCamera camera(in);
                 for (const V2f& film : {V2f(0.f), V2f(-5, 8), V2f(9, -3)})
                     EXPECT_TRUE(agree(irradiance(camera, film)[0], quadrature(in, film)))
@@ -220,7 +220,7 @@ TEST(LensCamera, OtherShapesAreAsQuadratureSays) {
 TEST(LensCamera, IrisAndFilmPointTurnTogether) {
     const auto turned = [](double degrees) {
         const LensCamera camera(
-            input_of(kTakumar, {.shape = rotated(star(5), degrees), .stop_scale = 0.5}));
+            oracle_input(kTakumar, {.shape = rotated(star(5), degrees), .stop_scale = 0.5}));
         return irradiance(camera, at_azimuth(14, 20 + degrees))[0];
     };
     const Moments still = turned(0);
@@ -234,7 +234,7 @@ TEST(LensCamera, EachWavelengthHasItsOwnIrradiance) {
     for (const std::string& name : {kTakumar, kAnamorphic})
         for (const double scale : {0.5, 0.03})
             for (const ApertureShape& shape : {ApertureShape(Disk{}), ApertureShape(star(5))}) {
-                const LensCameraInput in = input_of(
+                const LensCameraInput in = oracle_input(
                     name,
                     {.shape = shape, .dispersion = DispersionMode::Split, .stop_scale = scale});
                 const V2f film(3, 11);
@@ -252,7 +252,7 @@ TEST(LensCamera, AtF4NearlyAllDrawsPassOnTheAxis) {
               ApertureShape(regular_polygon(3)), ApertureShape(rhomboid()),
               ApertureShape(frame())}) {
             const double filed = first_order(Lens(read_lens(name)), kLineD_nm).fnumber;
-            const LensCamera camera(input_of(
+            const LensCamera camera(oracle_input(
                 name,
                 {.shape = shape, .dispersion = DispersionMode::Split, .stop_scale = filed / 4}));
             test::Random random(3);
@@ -271,7 +271,7 @@ TEST(LensCamera, AtF4NearlyAllDrawsPassOnTheAxis) {
 // A stop so small that a ray cannot be aimed at it still lets through what its area says.
 TEST(LensCamera, IrradianceGoesAsTheAreaOfASmallStop) {
     const auto found = [](double scale) {
-        const LensCameraInput in = input_of(kTakumar, {.stop_scale = scale});
+        const LensCameraInput in = oracle_input(kTakumar, {.stop_scale = scale});
         return irradiance(LensCamera(in), V2f(2, 9))[0].mean() / in.iris.area_mm2();
     };
     const double at_f64 = found(kTakumarFNumber / 64);
@@ -281,7 +281,7 @@ TEST(LensCamera, IrradianceGoesAsTheAreaOfASmallStop) {
 // Where the lens itself has such a stop, its own tolerance is finer than what floats tell apart.
 TEST(LensCamera, RaysReachAStopThatIsFiledAsTiny) {
     const auto found = [](double radius_mm) {
-        LensCameraInput in = input_of(kTakumar);
+        LensCameraInput in = oracle_input(kTakumar);
         Prescription p = in.lens->prescription();
         p.surfaces[size_t(in.lens->stop())].semi_diameter_mm = radius_mm;
         in.lens = std::make_shared<const Lens>(p);
@@ -298,7 +298,7 @@ TEST(LensCamera, NothingIsNotANumber) {
         for (const double scale : {kTakumarFNumber / 64, 1e-7, 1.6, 100.})
             for (const DispersionMode dispersion :
                  {DispersionMode::Shared, DispersionMode::Split}) {
-                const LensCamera camera(input_of(
+                const LensCamera camera(oracle_input(
                     name, {.shape = star(5), .dispersion = dispersion, .stop_scale = scale}));
                 test::Random random(8);
                 for (const float reach : {1.f, 20.f, 200.f, 1e6f, 1e30f})
@@ -327,7 +327,7 @@ TEST(LensCamera, RaysComeBackToTheFilmPoint) {
     const Bands bands = four_wavelengths();
     const auto doubles = [](f4 a) { return __builtin_convertvector(a, d4); };
     for (const std::string name : test::kOracleLenses) {
-        const LensCameraInput in = input_of(name, {.dispersion = DispersionMode::Split});
+        const LensCameraInput in = oracle_input(name, {.dispersion = DispersionMode::Split});
         const LensCamera camera(in);
         const Lens& lens = *in.lens;
         const LensIndices<d4> indices = lens.exact_indices(doubles(bands.nm));
@@ -359,7 +359,7 @@ TEST(LensCamera, RaysComeBackToTheFilmPoint) {
 TEST(RayAimer, RaysMeetTheStopWhereTheyShould) {
     const f4 nm = four_wavelengths().nm;
     for (const std::string name : test::kOracleLenses) {
-        const LensCameraInput in = input_of(name);
+        const LensCameraInput in = oracle_input(name);
         const Lens& lens = *in.lens;
         const RayAimer aimer(lens, in.film_mm, 21.6);
         const auto radius =

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs the checks that take too long for each merge, all of them or those that are named:
 #
-#   tests/long.sh [files] [address] [thread] [tidy] [fuzz] [coverage] [mutants] [root]
+#   tests/long.sh [files] [address] [thread] [tidy] [fuzz] [coverage] [mutants] [noise] [root]
 #
 #   files     each file of the product compiles by itself
 #   address   all tests under the address and undefined-behaviour sanitizers
@@ -11,13 +11,14 @@
 #   fuzz      the readers of files, and random lenses, FUZZ_SECONDS each (600)
 #   coverage  the share of the product's lines that the tests reach
 #   mutants   small faults on purpose: do the tests notice? MUTANTS of them (20)
+#   noise     200 scenes that are made to fool plans, rendered to a noise
 #   root      README's commands and packages in bare Debians 12 and 13 (root only)
 #
 # Goes on after a failure. Ends with a line for each part, and fails where one failed.
 set -u
 cd "$(dirname "$0")/.."
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(files address thread tidy fuzz coverage mutants root)
+[ ${#parts[@]} -gt 0 ] || parts=(files address thread tidy fuzz coverage mutants noise root)
 
 files() { cmake --preset files -DPETZVAL_TESTS=OFF -DPETZVAL_BENCH=OFF && cmake --build --preset files; }
 # The leak checker itself crashes at the end of 1 program in 1,000; a fault of a test fails twice.
@@ -48,6 +49,10 @@ coverage() {
         gcovr --root . --filter '(core|camera|integrator|io|apps)/' --sort-percentage --print-summary build-coverage
 }
 mutants() { python3 tests/measure/mutants.py --count "${MUTANTS:-20}"; }
+noise() {
+    cmake --preset release && cmake --build --preset release --target apps_render_test &&
+        PETZVAL_NOISE_SCENES=200 build/bin/apps_render_test --gtest_filter='NoiseAdversary.*'
+}
 root() { tests/measure/roots.sh 12 && tests/measure/roots.sh 13; }
 
 status=0 results=()

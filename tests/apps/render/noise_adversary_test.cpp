@@ -3,7 +3,11 @@
 // least" is said.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <string>
 #include <vector>
 
 #include "apps/render/render_session.h"
@@ -13,7 +17,7 @@
 namespace petzval::apps {
 namespace {
 
-constexpr uint32_t kScenes = 20, kParts = 6, kMostSamples = 512;
+constexpr uint32_t kParts = 6, kMostSamples = 512;
 constexpr double kNoise = 0.2;
 
 struct Rendered {
@@ -58,11 +62,14 @@ double true_noise_from(const std::vector<double>& picture, const std::vector<Ren
     return std::sqrt(std::max(0., mean - 2 * error));
 }
 
-// Of 20 scenes one may be noisier than it says by chance, none far.
+// Of 20 scenes one may be noisier than it says by chance, of 200 two; none far.
+// PETZVAL_NOISE_SCENES: how many.
 TEST(NoiseAdversary, TheNoiseIsAsPrinted) {
+    const char* asked = std::getenv("PETZVAL_NOISE_SCENES");
+    const uint32_t scenes = asked ? static_cast<uint32_t>(std::stoul(asked)) : 20;
     RenderSession session(2);
-    int above = 0, said = 0;
-    for (uint32_t i = 0; i < kScenes; ++i) {
+    uint32_t above = 0, said = 0;
+    for (uint32_t i = 0; i < scenes; ++i) {
         const test::TemporaryFolder folder;
         const test::PlanScene scene = test::plan_scene(i);
         SCOPED_TRACE(scene.kind + " " + std::to_string(i));
@@ -83,12 +90,18 @@ TEST(NoiseAdversary, TheNoiseIsAsPrinted) {
             parts.push_back(rendered(session, request));
         }
         const double least = true_noise_from(picture.values, parts, picture.noise->floor_nits);
-        above += least > 1.25 * picture.noise->noise;
+        if (least > 1.25 * picture.noise->noise) {
+            ++above;
+            std::cerr << scene.kind << ' ' << i << ": " << least << " or more, printed "
+                      << picture.noise->noise << '\n';
+        }
         EXPECT_LE(least, 2 * picture.noise->noise);
         EXPECT_LE(picture.noise->noise, 1.1 * kNoise);
     }
-    EXPECT_LE(above, 1);
-    EXPECT_GE(said, 8) << "not everything is called \"at least\"";
+    std::cerr << "noise known in " << said << " of " << scenes << " scenes, too small in " << above
+              << '\n';
+    EXPECT_LE(above, std::max(1u, scenes / 100));
+    EXPECT_GE(said, scenes * 2 / 5) << "not everything is called \"at least\"";
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ struct TargetGrid {
             last(size_px.x * (i + 1) / cells.x, size_px.y * (j + 1) / cells.y);
         return {V2f(first) / V2f(size_px), V2f(last) / V2f(size_px)};
     }
-    /// Cell of a film point, as FilmPoint has it; beyond the frame, the nearest.
+    /// Cell of a pixel, by its middle, as FilmPoint has it; beyond the frame, the nearest.
     [[nodiscard]] const TargetCell& at(V2f film) const {
         const auto cell = [](float share, int count) {
             return static_cast<size_t>(

@@ -10,7 +10,8 @@ void TargetCamera::sample_all(std::span<const FilmPoint> points, std::span<const
     std::array<const TargetCell*, kMostFilmPoints> of_points{};
     bool any = false;
     for (size_t i = 0; targets_ && i < points.size(); ++i) {
-        const TargetCell& cell = targets_->at(points[i].film);
+        // By its pixel: a ray to a target may have another film point, and must have the same list.
+        const TargetCell& cell = targets_->at(middle_of_pixel(points[i]));
         if (cell.empty() || !points[i].pixel.filter) continue;
         of_points[i] = &cell;
         any = true;

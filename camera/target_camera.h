@@ -10,6 +10,11 @@
 
 namespace petzval::camera {
 
+/// The middle of the pixel of a film point, as FilmPoint has it.
+[[nodiscard]] inline V2f middle_of_pixel(const FilmPoint& point) {
+    return point.film - point.pixel.offset_px / point.pixel.frame_px;
+}
+
 /// Rays of another camera and, together with them, rays to targets: an estimate without a bias, by
 /// the shares of both (balance heuristic, Veach and Guibas 1995).
 class TargetCamera : public Camera {

@@ -11,10 +11,6 @@
 namespace petzval::camera {
 namespace {
 
-V2f middle_of_pixel(const FilmPoint& point) {
-    return point.film - point.pixel.offset_px / point.pixel.frame_px;
-}
-
 /// Whether a film point may see a target; along: of the middle of its pixel.
 bool may_see(const ListedTarget& target, V2f film, const std::array<float, 4>& along) {
     return target.seen_from.contains(along) &&

@@ -109,6 +109,35 @@ TEST(TargetMeans, AreKeptForALampInTheOpen) {
     expect_same_mean(world, camera, 4, "a lamp");
 }
 
+// A ray to a lamp that is sharp leaves from another film point of the pixel. The number of rays
+// must be that of the pixel: cells are smaller than three pixels here, and each second one sends
+// eight.
+TEST(TargetMeans, AreKeptForSharpLampsWhereCellsSendOneRayOrEight) {
+    TracedWorld world;
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 7; ++x)
+            place(world.scene,
+                  sphere(V3f(-0.5f + 0.161f * float(x), -0.32f + 0.161f * float(y), -3), 0.006f, 12,
+                         true),
+                  emitter_material(500.f));
+    world.finish();
+    const auto camera = thin(3);
+    const Means without = rendered(world, *camera, 1);
+    const auto aims = camera::target_camera(camera);
+    auto grid = std::make_shared<camera::TargetGrid>(
+        *camera::find_targets(*aims, kSize, small_features_of(world.scene)));
+    size_t sharp = 0;
+    for (size_t n = 0; n < grid->lists.size(); ++n) {
+        grid->lists[n].rays = n % 2 == 0 ? 1 : 8;
+        for (const camera::ListedTarget& target : grid->lists[n].targets) sharp += target.is_sharp;
+    }
+    EXPECT_GE(sharp, 35u);
+    aims->set_targets(grid);
+    const Means with = rendered(world, *aims, 1000);
+    EXPECT_GE(least_p(without, with), sidak(kStatisticalTests * static_cast<int>(kParts)));
+    EXPECT_LT(noise(with) * 2, noise(without));
+}
+
 TEST(TargetMeans, AreKeptForAHalfHiddenLamp) {
     for (const float z : {-0.5f, -1.5f, -2.95f}) {
         TracedWorld world;

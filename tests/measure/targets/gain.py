@@ -90,7 +90,7 @@ def main(program, name, arguments, seeds, others):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(usage=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--others", type=int, default=16)
     parser.add_argument("program")

@@ -10,11 +10,11 @@ lens. Then the largest z that chance leaves to one in a hundred of so many (Sida
 """
 import argparse
 import os
+import statistics
 import sys
 import tempfile
 
 import numpy
-import scipy.stats
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import gain
@@ -49,7 +49,7 @@ def main(given):
             print("%s, %s: ratio %.4f, of which %.4f is chance, z %.2f" % (
                 scene, lens, sent.mean() / plain.mean(),
                 numpy.hypot(sent.std(ddof=1), plain.std(ddof=1)) / given.seeds ** .5 / plain.mean(), z), flush=True)
-    bound = scipy.stats.norm.isf((1 - .99 ** (1 / len(pairs))) / 2)
+    bound = statistics.NormalDist().inv_cdf((1 + .99 ** (1 / len(pairs))) / 2)
     print("largest |z| %.2f; chance leaves %.2f to one in a hundred" % (largest, bound))
 
 

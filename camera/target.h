@@ -26,6 +26,9 @@ struct Target {
     std::optional<AstigmaticImage> image{};
 };
 
+/// Distance from the middle of a pixel within which its film points lie, mostly.
+inline constexpr float kFilterReach_px = 1.5f;
+
 /// Eight-sided part of the film: by x, y, x + y and x - y of its points.
 struct FilmOctagon {
     std::array<float, 4> low{}, high{};
@@ -109,11 +112,11 @@ struct TargetGrid {
     std::vector<TargetCell> lists;  ///< row by row
     std::vector<Target> targets;    ///< all of them
 
-    /// A cell of a frame.
+    /// Part of the film that the pixels of a cell see, in a frame of so many pixels. Parts overlap,
+    /// as filters do. Half of a filter's reach holds 93 % of its points, and costs less time.
     [[nodiscard]] FilmCell cell(int i, int j, V2i size_px) const {
-        const V2i first(size_px.x * i / cells.x, size_px.y * j / cells.y),
-            last(size_px.x * (i + 1) / cells.x, size_px.y * (j + 1) / cells.y);
-        return {V2f(first) / V2f(size_px), V2f(last) / V2f(size_px)};
+        const V2f reach = V2f(kFilterReach_px / 2) / V2f(size_px);
+        return {V2f(V2i(i, j)) / V2f(cells) - reach, V2f(V2i(i + 1, j + 1)) / V2f(cells) + reach};
     }
     /// Cell of a pixel, by its middle, as FilmPoint has it; beyond the frame, the nearest.
     [[nodiscard]] const TargetCell& at(V2f film) const {

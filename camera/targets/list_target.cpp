@@ -11,8 +11,6 @@ namespace {
 
 /// Radius of the circle of confusion up to which a target counts as sharp.
 constexpr float kSharp_px = 0.3f;
-/// Distance from the middle of a pixel within which its film points lie, mostly.
-constexpr float kFilter_px = 1.5f;
 /// Margin of the part of the film that sees a target.
 constexpr float kMore = 0.06f;
 
@@ -68,7 +66,7 @@ V2f pictured(const StopMap& map, const ListedTarget& target) {
 FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_px) {
     FilmOctagon out;
     out.low.fill(INFINITY), out.high.fill(-INFINITY);
-    out.beyond = kFilter_px / float(std::min(frame_px.x, frame_px.y));
+    out.beyond = kFilterReach_px / float(std::min(frame_px.x, frame_px.y));
     const auto by_film = map.rays_by_film(map.middle());
     std::array<StopMap::Rays, StopMap::kTried_nm.size()> rays;
     std::transform(StopMap::kTried_nm.begin(), StopMap::kTried_nm.end(), rays.begin(),

@@ -48,9 +48,10 @@ class CellPilot {
         : camera_(camera), tracer_(tracer), frame_px_(frame_px) {}
 
     /// Samples of even points of a part of the film, which are drawn for a place of the frame, from
-    /// a first one on; to: a target, or none for ordinary ones.
+    /// a first one on: rays to the target of a cell, or ordinary ones beside those to its targets.
     [[nodiscard]] PilotFound samples(V2i drawn_for, const camera::FilmCell& part, uint32_t begin,
-                                     uint32_t count, const camera::TargetCell* to) const {
+                                     uint32_t count, const camera::TargetCell& cell,
+                                     bool to_target) const {
         PilotFound out;
         PathStats stats;
         for (uint32_t first = 0; first < count; first += camera::kMostFilmPoints) {
@@ -65,11 +66,10 @@ class CellPilot {
                 bands[i] = Bands::rgb();
                 points[i] =
                     at(part.first + sampler.get2(Dim::Film) * (part.last - part.first), sampler);
-                cells[i] = to ? to : &camera_.targets()->at(points[i].film);
-                if (cells[i]->empty()) cells[i] = nullptr;
+                cells[i] = cell.empty() ? nullptr : &cell;
             }
-            const auto sample =
-                to ? &camera::TargetCamera::sample_targets : &camera::TargetCamera::sample_beside;
+            const auto sample = to_target ? &camera::TargetCamera::sample_targets
+                                          : &camera::TargetCamera::sample_beside;
             (camera_.*sample)({points.data(), n}, {bands.data(), n}, {cells.data(), n},
                               {paths.data(), n});
             for (uint32_t i = 0; i < n; ++i) {
@@ -79,12 +79,12 @@ class CellPilot {
                     FilmSample none;
                     light +=
                         path.weight * tracer_.radiance({path.ray, path.lanes, path.hero_decided,
-                                                        to ? path.mis_weight : 1.f},
+                                                        to_target ? path.mis_weight : 1.f},
                                                        bands[i], points[i].sampler, none, stats);
                 }
                 const double found = std::fabs(double(luminance(to_rgb(light, bands[i]))));
                 out.add(found, double(paths[i][0].mis_weight));
-                out.hits += to && found > kMet * radiance_of(*to, to->targets[0]);
+                out.hits += to_target && found > kMet * radiance_of(cell, cell.targets[0]);
             }
         }
         out.cost = steps(stats);
@@ -141,6 +141,15 @@ struct CellChoice {
     size_t taken = 0;
 };
 
+/// The place of a cell that is nearest to a film point.
+size_t place_of(V2f film, const camera::FilmCell& part) {
+    const V2f within = (film - part.first) / (part.last - part.first) * float(kPlaces);
+    const auto along = [](float at) {
+        return static_cast<size_t>(std::clamp(at, 0.f, float(kPlaces) - 0.5f));
+    };
+    return along(within.y) * kPlaces + along(within.x);
+}
+
 /// dark: luminance from which on variance is relative to the cell's own.
 CellChoice choice_of(const camera::TargetCell& cell, const camera::FilmCell& part,
                      const CellFound& found, double dark) {
@@ -182,7 +191,12 @@ CellChoice choice_of(const camera::TargetCell& cell, const camera::FilmCell& par
             sees[n] = cell.targets[k].seen_from.contains(camera::FilmOctagon::along(film));
             seen += sees[n] ? 1. / double(places.size()) : 0;
         }
-        if (seen == 0) sees.fill(true), seen = 1;
+        // What lies between places is seen from the nearest one.
+        if (seen == 0) {
+            const camera::FilmCell from = cell.targets[k].seen_from.within(part);
+            sees[place_of((from.first + from.last) / 2.f, part)] = true;
+            seen = 1. / double(places.size());
+        }
         out.roots[k] /= std::sqrt(seen);
         double spread = 0, cost = 0;
         for (size_t n = 0; n < places.size(); ++n) {
@@ -252,7 +266,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
     std::vector<CellFound> found(all->lists.size());
     camera::run_cells(run, all->cells, [&](size_t n, V2i cell) {
         const camera::FilmCell part = all->cell(cell.x, cell.y, frame_px);
-        found[n].ordinary = pilot.samples(cell, part, 0, count, nullptr);
+        found[n].ordinary = pilot.samples(cell, part, 0, count, all->lists[n], false);
         uint32_t begin = count;
         for (const camera::ListedTarget& target : all->lists[n].targets) {
             PilotFound& sent = found[n].sent.emplace_back();
@@ -262,7 +276,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
             camera::TargetCell alone{all->lists[n].map, {target}};
             alone.targets[0].chance = 1;
             alone.light_nits = static_cast<float>(light_of(all->lists[n], target));
-            sent = pilot.samples(cell, target.seen_from.within(part), begin, rays, &alone);
+            sent = pilot.samples(cell, target.seen_from.within(part), begin, rays, alone, true);
             begin += rays;
             sent.scale(share);
         }

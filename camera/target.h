@@ -32,7 +32,7 @@ inline constexpr float kFilterReach_px = 1.5f;
 /// Eight-sided part of the film: by x, y, x + y and x - y of its points.
 struct FilmOctagon {
     std::array<float, 4> low{}, high{};
-    float beyond = 0;  ///< how far it reaches beyond, along x and y, for the middles of pixels
+    V2f beyond{0.f};  ///< how far it reaches beyond, for the middles of pixels
 
     [[nodiscard]] static std::array<float, 4> along(V2f film) {
         return {film.x, film.y, film.x + film.y, film.x - film.y};
@@ -47,12 +47,13 @@ struct FilmOctagon {
         const auto at = along(film);
         bool in = true;
         for (size_t k = 0; k < 4; ++k) {
-            const float less = k < 2 ? beyond : kRoot2 * beyond;
-            in &= at[k] >= low[k] + less && at[k] <= high[k] - less;
+            in &= at[k] >= low[k] + beyond_along(k) && at[k] <= high[k] - beyond_along(k);
         }
         return in;
     }
-    static constexpr float kRoot2 = 1.41421356f;
+    [[nodiscard]] float beyond_along(size_t k) const {
+        return k == 0 ? beyond.x : k == 1 ? beyond.y : beyond.length();
+    }
     /// Rectangle about its part of a cell; of no area where they do not meet.
     [[nodiscard]] FilmCell within(const FilmCell& cell) const {
         const V2f first = cell.nearest({low[0], low[1]}), last = cell.nearest({high[0], high[1]});
@@ -112,11 +113,9 @@ struct TargetGrid {
     std::vector<TargetCell> lists;  ///< row by row
     std::vector<Target> targets;    ///< all of them
 
-    /// Part of the film that the pixels of a cell see, in a frame of so many pixels. Parts overlap,
-    /// as filters do. Half of a filter's reach holds 93 % of its points, and costs less time.
-    [[nodiscard]] FilmCell cell(int i, int j, V2i size_px) const {
-        const V2f reach = V2f(kFilterReach_px / 2) / V2f(size_px);
-        return {V2f(V2i(i, j)) / V2f(cells) - reach, V2f(V2i(i + 1, j + 1)) / V2f(cells) + reach};
+    /// Film points that are middles of pixels of a cell.
+    [[nodiscard]] FilmCell cell(int i, int j) const {
+        return {V2f(V2i(i, j)) / V2f(cells), V2f(V2i(i + 1, j + 1)) / V2f(cells)};
     }
     /// Cell of a pixel, by its middle, as FilmPoint has it; beyond the frame, the nearest.
     [[nodiscard]] const TargetCell& at(V2f film) const {

@@ -10,7 +10,7 @@ namespace petzval::camera {
 namespace {
 
 /// Radius of the circle of confusion up to which a target counts as sharp.
-constexpr float kSharp_px = 0.3f;
+constexpr float kSharp_px = 0.6f;
 /// Margin of the part of the film that sees a target.
 constexpr float kMore = 0.06f;
 
@@ -66,7 +66,7 @@ V2f pictured(const StopMap& map, const ListedTarget& target) {
 FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_px) {
     FilmOctagon out;
     out.low.fill(INFINITY), out.high.fill(-INFINITY);
-    out.beyond = kFilterReach_px / float(std::min(frame_px.x, frame_px.y));
+    out.beyond = V2f(kFilterReach_px) / V2f(frame_px);
     const auto by_film = map.rays_by_film(map.middle());
     std::array<StopMap::Rays, StopMap::kTried_nm.size()> rays;
     std::transform(StopMap::kTried_nm.begin(), StopMap::kTried_nm.end(), rays.begin(),
@@ -80,8 +80,8 @@ FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_
             const V2f film = map.middle() - by.film_for(landing(at(of_nm, stop), target));
             const auto along = FilmOctagon::along(film);
             for (size_t k = 0; k < 4; ++k) {
-                const float reach = (1 + error) * across[k].length() / by.area() +
-                                    (k < 2 ? 1 : FilmOctagon::kRoot2) * out.beyond;
+                const float reach =
+                    (1 + error) * across[k].length() / by.area() + out.beyond_along(k);
                 out.low[k] = std::min(out.low[k], along[k] - reach);
                 out.high[k] = std::max(out.high[k], along[k] + reach);
             }

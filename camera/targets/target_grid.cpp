@@ -30,10 +30,18 @@ bool may_be_target(const SmallFeature& feature) {
            std::isfinite(feature.radiance) && !(feature.at_infinity && feature.reach_m > 0.5f);
 }
 
+/// Part of the film that the pixels of a cell see, in a frame of so many: half of a filter's reach
+/// holds 93 % of its points, and costs less time than all of it.
+FilmCell reached_by(const FilmCell& cell, V2i size_px) {
+    const V2f reach = V2f(kFilterReach_px / 2) / V2f(size_px);
+    return {cell.first - reach, cell.last + reach};
+}
+
 /// The targets of a cell, by what each is expected to add to a pixel. lamps: brightest first, and
 /// targets: what they are as such.
-TargetCell listed_in(const TargetCamera& camera, const FilmCell& place, V2i number, V2i size_px,
+TargetCell listed_in(const TargetCamera& camera, const FilmCell& pixels, V2i number, V2i size_px,
                      std::span<const SmallFeature> lamps, std::span<const Target> targets) {
+    const FilmCell place = reached_by(pixels, size_px);
     const RayBundle bundle =
         bundle_of(camera, place, number_of(PrepassSeed::TargetCells), number, kRays);
     TargetCell cell;
@@ -45,6 +53,7 @@ TargetCell listed_in(const TargetCamera& camera, const FilmCell& place, V2i numb
         if (!cell.map) break;
         auto target = camera.listed(targets[n], *cell.map, size_px);
         if (!target || !(target->met < kMostMet)) continue;
+        if (!(target->seen_from.within(pixels).area() > 0)) continue;
         target->chance = target->met * static_cast<float>(lamps[n].radiance);
         target->number = static_cast<uint32_t>(n);
         list.push_back(*std::move(target));
@@ -87,8 +96,8 @@ std::shared_ptr<const TargetGrid> find_targets(const TargetCamera& camera, V2i s
     out->cells = {cells(size_px.x), cells(size_px.y)};
     out->lists.resize(static_cast<size_t>(out->cells.x) * static_cast<size_t>(out->cells.y));
     run_cells(run, out->cells, [&](size_t n, V2i cell) {
-        out->lists[n] = listed_in(camera, out->cell(cell.x, cell.y, size_px), cell, size_px, lamps,
-                                  out->targets);
+        out->lists[n] =
+            listed_in(camera, out->cell(cell.x, cell.y), cell, size_px, lamps, out->targets);
     });
     const bool any = std::any_of(out->lists.begin(), out->lists.end(),
                                  [](const TargetCell& cell) { return !cell.empty(); });

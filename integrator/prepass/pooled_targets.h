@@ -89,10 +89,7 @@ inline Likely likely_of(uint32_t hits, uint32_t rays, double seen, double hit) {
 class PooledTargets {
   public:
     PooledTargets(const camera::TargetGrid& grid, V2i frame_px)
-        : grid_(grid),
-          frame_px_(frame_px),
-          shares_(grid.targets.size()),
-          found_(grid.targets.size()) {
+        : grid_(grid), shares_(grid.targets.size()), found_(grid.targets.size()) {
         const auto images = static_cast<double>(
             std::count_if(grid.targets.begin(), grid.targets.end(),
                           [](const camera::Target& t) { return t.image.has_value(); }));
@@ -205,13 +202,11 @@ class PooledTargets {
     }
     template <class F>
     void each_cell(const F& use) const {
-        camera::run_cells(camera::one_by_one, grid_.cells, [&](size_t n, V2i cell) {
-            use(n, grid_.cell(cell.x, cell.y, frame_px_));
-        });
+        camera::run_cells(camera::one_by_one, grid_.cells,
+                          [&](size_t n, V2i cell) { use(n, grid_.cell(cell.x, cell.y)); });
     }
 
     const camera::TargetGrid& grid_;
-    V2i frame_px_;
     std::vector<double> shares_;  ///< sums over the cells
     std::vector<PilotFound> found_;
     Lamps all_lamps_;

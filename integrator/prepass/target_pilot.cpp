@@ -47,8 +47,9 @@ class CellPilot {
     CellPilot(const camera::TargetCamera& camera, const PathTracer<>& tracer, V2i frame_px)
         : camera_(camera), tracer_(tracer), frame_px_(frame_px) {}
 
-    /// Samples of even points of a part of the film, which are drawn for a place of the frame, from
-    /// a first one on: rays to the target of a cell, or ordinary ones beside those to its targets.
+    /// Samples of pixels whose middles are even in a part of the film, which are drawn for a place
+    /// of the frame, from a first one on: rays to the target of a cell, or ordinary ones beside
+    /// those to its targets.
     [[nodiscard]] PilotFound samples(V2i drawn_for, const camera::FilmCell& part, uint32_t begin,
                                      uint32_t count, const camera::TargetCell& cell,
                                      bool to_target) const {
@@ -64,8 +65,11 @@ class CellPilot {
                 const Sampler sampler(SamplerKind::Owen, number_of(PrepassSeed::Targets),
                                       {drawn_for.x, drawn_for.y, begin + first + i});
                 bands[i] = Bands::rgb();
-                points[i] =
-                    at(part.first + sampler.get2(Dim::Film) * (part.last - part.first), sampler);
+                // Pixels lie anywhere: what is asked for is a mean over many.
+                const V2f middle = part.first + sampler.get2(Dim::Film) * (part.last - part.first),
+                          offset_px = filter_.sample(sampler.get2(Dim::Film, 1));
+                points[i] = {
+                    middle + offset_px / frame_px_, sampler, {&filter_, offset_px, frame_px_}};
                 cells[i] = cell.empty() ? nullptr : &cell;
             }
             const auto sample = to_target ? &camera::TargetCamera::sample_targets
@@ -94,22 +98,15 @@ class CellPilot {
     }
 
   private:
-    /// A film point in its pixel.
-    [[nodiscard]] camera::FilmPoint at(V2f film, const Sampler& sampler) const {
-        const V2f px = film * frame_px_;
-        const V2f middle(std::floor(px.x) + 0.5f, std::floor(px.y) + 0.5f);
-        return {film, sampler, {&filter_, px - middle, frame_px_}};
-    }
-
     const camera::TargetCamera& camera_;
     const PathTracer<>& tracer_;
     V2f frame_px_;
-    Filter filter_{FilterKind::Box, 0.5f};
+    Filter filter_{FilterKind::BlackmanHarris, camera::kFilterReach_px};
 };
 
 /// What ordinary samples find in a cell and in those beside it, and rays to targets in all.
 CellFound pooled(const camera::TargetGrid& grid, const std::vector<CellFound>& found,
-                 const PooledTargets& targets, V2i frame_px, V2i cell) {
+                 const PooledTargets& targets, V2i cell) {
     const auto index = [&](int x, int y) { return static_cast<size_t>(y * grid.cells.x + x); };
     CellFound out;
     int count = 0;
@@ -119,7 +116,7 @@ CellFound pooled(const camera::TargetGrid& grid, const std::vector<CellFound>& f
             ++count;
         }
     out.ordinary.scale(1. / count);
-    out.sent = targets.in_cell(index(cell.x, cell.y), grid.cell(cell.x, cell.y, frame_px));
+    out.sent = targets.in_cell(index(cell.x, cell.y), grid.cell(cell.x, cell.y));
     return out;
 }
 
@@ -265,7 +262,7 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
     PooledTargets at_targets(*all, frame_px);
     std::vector<CellFound> found(all->lists.size());
     camera::run_cells(run, all->cells, [&](size_t n, V2i cell) {
-        const camera::FilmCell part = all->cell(cell.x, cell.y, frame_px);
+        const camera::FilmCell part = all->cell(cell.x, cell.y);
         found[n].ordinary = pilot.samples(cell, part, 0, count, all->lists[n], false);
         uint32_t begin = count;
         for (const camera::ListedTarget& target : all->lists[n].targets) {
@@ -291,8 +288,8 @@ std::shared_ptr<const camera::TargetGrid> targets_that_pay(const camera::TargetC
     const double dark = kDark * mean / static_cast<double>(found.size());
     std::vector<CellChoice> cells(found.size());
     camera::run_cells(run, all->cells, [&](size_t n, V2i cell) {
-        cells[n] = choice_of(all->lists[n], all->cell(cell.x, cell.y, frame_px),
-                             pooled(*all, found, at_targets, frame_px, cell), dark);
+        cells[n] = choice_of(all->lists[n], all->cell(cell.x, cell.y),
+                             pooled(*all, found, at_targets, cell), dark);
     });
     const Effort without = sum_of(cells);
     take_best(cells);

@@ -74,11 +74,18 @@ struct ListedTarget {
     uint64_t squares = 0;
     /// About all of the stop sees it from one pixel: film points are drawn for points of the stop.
     bool is_sharp = false;
+    /// A good part of the stop does: middles of the pixels that draw film points for half of the
+    /// rays to it.
+    std::optional<FilmOctagon> core{};
     float chance = 1;     ///< that a ray is sent to it, among those that a film point may see
     float search = 0;     ///< evaluations of the map that a ray to it takes, on average
     float met = 0;        ///< share of ordinary rays that pass it, about
     uint32_t number = 0;  ///< in TargetGrid::targets
 
+    /// Share of a pixel's rays to it that draw the film point; along: of the pixel's middle.
+    [[nodiscard]] float film_share(const std::array<float, 4>& along) const {
+        return is_sharp ? 1 : core && core->contains(along) ? 0.5f : 0;
+    }
     /// Length on the target, in its radii, of a length in the plane and a slope.
     [[nodiscard]] float in_radii(V2f place_and_slope) const { return most.dot(place_and_slope); }
 };

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "camera/targets/stop_region.h"
 
@@ -11,6 +13,8 @@ namespace {
 
 /// Radius of the circle of confusion up to which a target counts as sharp.
 constexpr float kSharp_px = 0.6f;
+/// Share of the points of the stop from which on those that see a target sharply are its core.
+constexpr float kCore = 0.25f;
 /// Margin of the part of the film that sees a target.
 constexpr float kMore = 0.06f;
 
@@ -46,8 +50,35 @@ std::optional<ListedTarget> in_frame(const StopMap& map, const Pose& pose, const
     return out;
 }
 
-constexpr std::array<std::array<float, 2>, 5> kOfStop{
-    {{0, 0}, {0.9f, 0}, {-0.9f, 0}, {0, 0.9f}, {0, -0.9f}}};
+/// Points of the stop: its middle, and three rings.
+std::vector<V2f> points_of_stop() {
+    std::vector<V2f> out{V2f(0.f)};
+    for (const float radius : {0.5f, 0.8f, 1.f})
+        for (int i = 0; i < 16; ++i) {
+            const float angle = kPi / 8 * (float(i) + radius);
+            out.push_back(V2f(std::cos(angle), std::sin(angle)) * radius);
+        }
+    return out;
+}
+
+/// Of some points of the stop the most that see a target from one place of the film, sharply.
+std::vector<V2f> sharp_together(const StopMap& map, const ListedTarget& target, V2f film,
+                                V2i frame_px, const std::vector<V2f>& stops) {
+    const StopMap::Rays rays = map.rays(film, kMiddle_nm);
+    const auto by_film = map.rays_by_film(film);
+    std::vector<V2f> at_px, best;
+    for (const V2f& stop : stops)
+        at_px.push_back(
+            FilmMotion(by_film, target, stop).film_for(landing(at(rays, stop), target)) *
+            V2f(frame_px));
+    for (const V2f& middle : at_px) {
+        std::vector<V2f> together;
+        for (size_t k = 0; k < stops.size(); ++k)
+            if ((at_px[k] - middle).length() < kSharp_px) together.push_back(stops[k]);
+        if (together.size() > best.size()) best = std::move(together);
+    }
+    return best;
+}
 
 /// Film point of the cell from which the middle of the stop sees a target, or nearly.
 V2f pictured(const StopMap& map, const ListedTarget& target) {
@@ -63,7 +94,8 @@ V2f pictured(const StopMap& map, const ListedTarget& target) {
 }
 
 /// Film points that see a target, by those that do so through points of the stop.
-FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_px) {
+FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_px,
+                      const std::vector<V2f>& stops) {
     FilmOctagon out;
     out.low.fill(INFINITY), out.high.fill(-INFINITY);
     out.beyond = V2f(kFilterReach_px) / V2f(frame_px);
@@ -71,7 +103,7 @@ FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_
     std::array<StopMap::Rays, StopMap::kTried_nm.size()> rays;
     std::transform(StopMap::kTried_nm.begin(), StopMap::kTried_nm.end(), rays.begin(),
                    [&](float nm) { return map.rays(map.middle(), nm); });
-    const auto add = [&](V2f stop) {
+    for (const V2f& stop : stops) {
         const FilmMotion by(by_film, target, stop);
         const float error = target.in_radii(map.error(StopMap::square(stop)));
         // The target's radius, and the reach of a filter.
@@ -86,13 +118,7 @@ FilmOctagon seen_from(const StopMap& map, const ListedTarget& target, V2i frame_
                 out.high[k] = std::max(out.high[k], along[k] + reach);
             }
         }
-    };
-    add(V2f(0.f));
-    for (const float radius : {0.5f, 0.8f, 1.f})
-        for (int i = 0; i < 16; ++i) {
-            const float angle = kPi / 8 * (float(i) + radius);
-            add(V2f(std::cos(angle), std::sin(angle)) * radius);
-        }
+    }
     for (size_t k = 0; k < 4; ++k) {
         const float more = kMore * (out.high[k] - out.low[k]);
         out.low[k] -= more, out.high[k] += more;
@@ -129,16 +155,12 @@ std::optional<ListedTarget> list_target(const Target& target, const StopMap& map
         std::min(1., double(area * map.stretch_mm2() / sqr(1 + moves)) / iris_mm2));
     // As seen from the film point that sees its middle.
     const V2f film = pictured(map, *out);
-    const StopMap::Rays seen = map.rays(film, kMiddle_nm);
-    float spread = 0;
-    for (const auto& [x, y] : kOfStop)
-        spread = std::max(
-            spread,
-            (landing(at(seen, V2f(x, y)), *out) - landing(at(seen, V2f(0.f)), *out)).length());
-    const FilmMotion by(map.rays_by_film(film), *out, V2f(0.f));
-    out->is_sharp = spread < kSharp_px * std::min(by.right.length() / float(frame_px.x),
-                                                  by.down.length() / float(frame_px.y));
-    out->seen_from = seen_from(map, *out, frame_px);
+    const std::vector<V2f> stops = points_of_stop(),
+                           sharp = sharp_together(map, *out, film, frame_px, stops);
+    out->is_sharp = sharp.size() == stops.size();
+    out->seen_from = seen_from(map, *out, frame_px, stops);
+    if (!out->is_sharp && float(sharp.size()) > kCore * float(stops.size()))
+        out->core = seen_from(map, *out, frame_px, sharp);
     out->search = out->is_sharp ? 0 : search_of(map, *out);
     return out;
 }

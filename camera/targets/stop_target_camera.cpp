@@ -11,12 +11,6 @@
 namespace petzval::camera {
 namespace {
 
-/// Whether a film point may see a target; along: of the middle of its pixel.
-bool may_see(const ListedTarget& target, V2f film, const std::array<float, 4>& along) {
-    return target.seen_from.contains(along) &&
-           (target.is_sharp || target.seen_from.contains_point(film));
-}
-
 /// Whether the ray that the map has for a point of the stop is near a target: other rays are
 /// neither sent nor asked for their density.
 bool is_near(const TargetView& view, const f4& ray, V2f stop) {
@@ -75,15 +69,20 @@ float StopTargetCamera::density_to_targets(const StopCrossings& crossings, const
         const V2f stop_mm = crossings.stop_mm[k], stop = cell.map->on_disc(stop_mm);
         const f4 ray = at(rays, stop);
         for (const ListedTarget& target : cell.targets) {
-            if (!may_see(target, point.film, along)) continue;
+            if (!target.seen_from.contains(along)) continue;
+            const float by_film = target.film_share(along),
+                        by_stop = target.seen_from.contains_point(point.film) ? 1 - by_film : 0;
+            if (!(by_film + by_stop > 0)) continue;
             const TargetView view{cell.map.get(), &target, point.film, crossings.nm[k]};
             if (!is_near(view, ray, stop)) continue;
             // The region that a ray was drawn from need not be found again.
             const bool is_own =
                 aimed && aimed->target == &target && aimed->density >= 0 && crossings.lanes == 1;
-            const float density = is_own            ? aimed->density
-                                  : target.is_sharp ? density_of_film(view, point, stop_mm)
-                                                    : density_of_stop(view, rays, stop_mm);
+            float density = 0;
+            if (by_film > 0) density += by_film * density_of_film(view, point, stop_mm);
+            if (by_stop > 0)
+                density +=
+                    by_stop * (is_own ? aimed->density : density_of_stop(view, rays, stop_mm));
             sum += crossings.stretch[k] * target.chance * density;
         }
     }
@@ -121,8 +120,8 @@ void StopTargetCamera::aim_at_stop(const Batch& batch, const PickedViews& views,
     searches.reserve(batch.points.size());
     std::array<size_t, kMostFilmPoints> of{};
     for (size_t i = 0; i < batch.points.size(); ++i) {
-        const std::optional<TargetView>& view = views[i];
-        if (!view || view->target->is_sharp || !view->target->seen_from.contains_point(view->film))
+        const std::optional<PickedView>& view = views[i];
+        if (!view || view->draws_film || !view->target->seen_from.contains_point(view->film))
             continue;
         of[searches.size()] = i;
         searches.emplace_back(*view, view->map->rays(view->film, view->nm));
@@ -146,27 +145,27 @@ void StopTargetCamera::aim_at_stop(const Batch& batch, const PickedViews& views,
 void StopTargetCamera::aim_at_film(const Batch& batch, const PickedViews& views, uint32_t ray,
                                    std::vector<Aimed>& out) const {
     for (size_t i = 0; i < batch.points.size(); ++i) {
-        std::optional<TargetView> view = views[i];
-        if (!view || !view->target->is_sharp) continue;
-        Aimed aimed{i, batch.points[i], {}, view->target};
-        view->film = middle_of_pixel(aimed.point);
+        if (!views[i] || !views[i]->draws_film) continue;
+        TargetView view = *views[i];
+        Aimed aimed{i, batch.points[i], {}, view.target};
+        view.film = middle_of_pixel(aimed.point);
         aimed.stop_mm =
-            view->map->stop_mm(uniform_disk(sampler(batch, i, ray).get2(Dim::TargetPoint)));
+            view.map->stop_mm(uniform_disk(sampler(batch, i, ray).get2(Dim::TargetPoint)));
         std::optional<V2f> landed;
-        trace_landings(camera_, {&*view, 1}, {&aimed.stop_mm, 1}, {&landed, 1});
+        trace_landings(camera_, {&view, 1}, {&aimed.stop_mm, 1}, {&landed, 1});
         if (!landed) continue;
         PixelFilter& pixel = aimed.point.pixel;
-        const FilmEllipse ellipse(*view, pixel.frame_px, aimed.stop_mm, *landed);
+        const FilmEllipse ellipse(view, pixel.frame_px, aimed.stop_mm, *landed);
         pixel.offset_px = ellipse.sample(sampler(batch, i, ray).get2(Dim::TargetFilm));
-        aimed.point.film = view->film + pixel.offset_px / pixel.frame_px;
-        view->film = aimed.point.film;
-        if (pixel.filter->value(pixel.offset_px) > 0 && is_near(*view, aimed.stop_mm))
+        aimed.point.film = view.film + pixel.offset_px / pixel.frame_px;
+        view.film = aimed.point.film;
+        if (pixel.filter->value(pixel.offset_px) > 0 && is_near(view, aimed.stop_mm))
             out.push_back(aimed);
     }
 }
 
-std::optional<TargetView> StopTargetCamera::picked(const Batch& batch, size_t i,
-                                                   uint32_t ray) const {
+std::optional<StopTargetCamera::PickedView> StopTargetCamera::picked(const Batch& batch, size_t i,
+                                                                     uint32_t ray) const {
     const TargetCell* const cell = batch.cells[i];
     if (!cell || ray >= rays_of(*cell, batch.points[i], batch.bands[i])) return std::nullopt;
     const auto along = FilmOctagon::along(middle_of_pixel(batch.points[i]));
@@ -180,8 +179,9 @@ std::optional<TargetView> StopTargetCamera::picked(const Batch& batch, size_t i,
         if (u < target.chance) break;
         u -= target.chance;
     }
-    return TargetView{cell->map.get(), found, batch.points[i].film,
-                      leading_nm(camera_, batch.bands[i])};
+    return PickedView{
+        {cell->map.get(), found, batch.points[i].film, leading_nm(camera_, batch.bands[i])},
+        u < found->film_share(along) * found->chance};
 }
 
 Sampler StopTargetCamera::sampler(const Batch& batch, size_t i, uint32_t ray) const {

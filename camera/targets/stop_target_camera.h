@@ -41,9 +41,12 @@ class StopTargetCamera final : public TargetCamera {
         const ListedTarget* target;
         float density = -1;
     };
-    /// What each film point of a batch sends a ray to.
-    using PickedViews = std::array<std::optional<TargetView>, kMostFilmPoints>;
-    [[nodiscard]] std::optional<TargetView> picked(const Batch&, size_t point, uint32_t ray) const;
+    /// What each film point of a batch sends a ray to, and whether the ray draws a film point.
+    struct PickedView : TargetView {
+        bool draws_film;
+    };
+    using PickedViews = std::array<std::optional<PickedView>, kMostFilmPoints>;
+    [[nodiscard]] std::optional<PickedView> picked(const Batch&, size_t point, uint32_t ray) const;
     [[nodiscard]] Sampler sampler(const Batch&, size_t point, uint32_t ray) const;
     void aim_at_stop(const Batch&, const PickedViews&, uint32_t ray, std::vector<Aimed>&) const;
     void aim_at_film(const Batch&, const PickedViews&, uint32_t ray, std::vector<Aimed>&) const;

@@ -157,6 +157,40 @@ TEST(SharpTargets, TracedLensesKeepTheirMean) {
             }
 }
 
+// Wide open, in focus: most of the stop sees a lamp from less than a pixel, its rim from several.
+TEST(SharpTargets, ThoseOfALensThatIsNotSharpHaveACore) {
+    LensCameraInput in = test::input_of(test::kTakumar, DispersionMode::Shared);
+    const auto camera = target_camera(std::make_shared<LensCamera>(std::move(in)));
+    const V2i frame_px(320, 213);
+    const V2f film(0.51f, 0.48f);
+    const float away_m = 300, radius_m = 0.05f;
+    const Filter filter(FilterKind::BlackmanHarris, 1.5f);
+    const Ray axis = test::ray_of(*camera, film, 1);
+    for (const V2f& aside_px : {V2f(0.f), V2f(0.9f, 0.7f), V2f(-1.2f, 0.4f)}) {
+        const V3f lamp = axis.origin + away_m * axis.direction;
+        const V2f middle = film + aside_px / V2f(frame_px);
+        TargetCell cell = test::listed_in(*camera, test::cell_about(film, frame_px), frame_px,
+                                          {{lamp, radius_m}});
+        ASSERT_EQ(cell.targets.size(), 1u);
+        EXPECT_FALSE(cell.targets[0].is_sharp);
+        ASSERT_TRUE(cell.targets[0].core);
+        cell.rays = 2;
+        const auto light = [&](const TargetCell& targets, uint32_t seed, uint32_t samples) {
+            return test::light_of(
+                       *camera, targets, {&filter, V2f(frame_px), middle}, seed, samples,
+                       [](const Sampler&) { return Bands::rgb(); },
+                       [&](const Ray& r) { return test::passes(r, lamp, radius_m) ? 1.f : 0.f; })
+                .light;
+        };
+        const test::Moments with = light(cell, 4, 1 << 13), without = light({}, 3, 1 << 19);
+        cell.targets[0].core.reset();
+        const test::Moments by_stop = light(cell, 5, 1 << 15);
+        EXPECT_TRUE(test::agrees(Mean(with) - Mean(without), 0))
+            << aside_px << ": " << Mean(with) << ", " << Mean(without);
+        EXPECT_LT(with.variance(), by_stop.variance() / 3) << aside_px;
+    }
+}
+
 // A film point whose pixel nobody knows has ordinary rays alone, with their whole weight.
 TEST(SharpTargets, NeedAPixel) {
     const auto camera = sharp_lens();

@@ -30,8 +30,13 @@ void add_render_command(CLI::App& app, Session& session) {
         output->required(false);  // the sheet is one
     });
     command->callback([order, command, &session] {
-        if (const auto& sweep = order->sequence.sweep; sweep && !find_field(sweep->field))
+        if (const auto& sweep = order->sequence.sweep; sweep && !find_field(sweep->field)) {
+            if (sweep->field == "method")
+                throw CLI::ValidationError(
+                    "--sweep",
+                    "leave out \"method=\": what it names is swept as filter-radius=1,2");
             throw no_such_option(*command, "--" + sweep->field);
+        }
         session.exit_code = run_render(*order, session);
     });
 }

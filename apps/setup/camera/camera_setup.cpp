@@ -102,7 +102,9 @@ float depth_of(const CameraContext& at, const Focus& focus, const M44f& to_world
         const auto depth = integrator::depth_under(at.scene, at.bvh, finder, eye, axis, film);
         if (!depth)
             throw at.unfit(
-                fmt::format("nothing to focus on under pixel {},{}", pixel->x, pixel->y));
+                fmt::format("nothing to focus on under pixel {},{}; give ⟨focus⟩ in metres, or a "
+                            "pixel that shows something",
+                            pixel->x, pixel->y));
         return *depth;
     }
     const auto depth = integrator::depth_of_middle(at.scene, at.bvh, finder, eye, axis);

@@ -269,6 +269,8 @@ TEST_F(CliLens, FocusIsOnWhatThePixelShows) {
                 1e-4);
     EXPECT_EQ(nothing.exit_code, 2);
     EXPECT_NE(nothing.err.find("nothing to focus on under pixel"), std::string::npos);
+    EXPECT_NE(nothing.err.find("give --focus in metres, or a pixel"), std::string::npos)
+        << nothing.err;
 }
 
 // Lanes that left the film went out or were lost to a cause; a thin lens has none to lose.

@@ -266,6 +266,8 @@ TEST_F(Sequences, WhatMakesNoSequenceIsRefused) {
             {{"--sweep", "fstop=1,,2", "-o", path("s_#.png")}, "is not an option and its values"},
             {{"--sweep", "output=a.png,b.png", "-o", path("s_#.png")},
              "--sweep: output is the same for all pictures; sweep what changes the picture"},
+            {{"--sweep", "method=max-depth=1,2", "-o", path("s_#.png")},
+             "--sweep: leave out \"method=\": what it names is swept as filter-radius=1,2"},
             {{"--sweep", "fstop=1,two", "-o", path("s_#.png")}, "--fstop"},
             {{"--sweep", "xyzzy=1,2", "-o", path("s_#.png")},
              "error: --xyzzy is no option of petzval render (--help"},

@@ -50,12 +50,12 @@ std::optional<ListedTarget> in_frame(const StopMap& map, const Pose& pose, const
     return out;
 }
 
-/// Points of the stop: its middle, and three rings.
-std::vector<V2f> points_of_stop() {
+/// Points of the stop: its middle, and so many on each of three rings.
+std::vector<V2f> points_of_stop(int on_ring) {
     std::vector<V2f> out{V2f(0.f)};
     for (const float radius : {0.5f, 0.8f, 1.f})
-        for (int i = 0; i < 16; ++i) {
-            const float angle = kPi / 8 * (float(i) + radius);
+        for (int i = 0; i < on_ring; ++i) {
+            const float angle = 2 * kPi / float(on_ring) * (float(i) + radius);
             out.push_back(V2f(std::cos(angle), std::sin(angle)) * radius);
         }
     return out;
@@ -155,11 +155,11 @@ std::optional<ListedTarget> list_target(const Target& target, const StopMap& map
         std::min(1., double(area * map.stretch_mm2() / sqr(1 + moves)) / iris_mm2));
     // As seen from the film point that sees its middle.
     const V2f film = pictured(map, *out);
-    const std::vector<V2f> stops = points_of_stop(),
-                           sharp = sharp_together(map, *out, film, frame_px, stops);
-    out->is_sharp = sharp.size() == stops.size();
-    out->seen_from = seen_from(map, *out, frame_px, stops);
-    if (!out->is_sharp && float(sharp.size()) > kCore * float(stops.size()))
+    const std::vector<V2f> few = points_of_stop(5),
+                           sharp = sharp_together(map, *out, film, frame_px, few);
+    out->is_sharp = sharp.size() == few.size();
+    out->seen_from = seen_from(map, *out, frame_px, points_of_stop(16));
+    if (!out->is_sharp && float(sharp.size()) > kCore * float(few.size()))
         out->core = seen_from(map, *out, frame_px, sharp);
     out->search = out->is_sharp ? 0 : search_of(map, *out);
     return out;

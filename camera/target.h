@@ -51,6 +51,7 @@ struct FilmOctagon {
         }
         return in;
     }
+    /// How far it reaches beyond along one of its four directions; of x + y and x - y about.
     [[nodiscard]] float beyond_along(size_t k) const {
         return k == 0 ? beyond.x : k == 1 ? beyond.y : beyond.length();
     }

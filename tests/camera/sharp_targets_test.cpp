@@ -84,30 +84,32 @@ TEST(SharpTargets, MayOverlap) {
     }
 }
 
-// The filter of a pixel beside the border of a cell reaches over it.
+// The filter of a pixel beside the border of a cell reaches over it. Small cells have the least
+// margin.
 TEST(SharpTargets, AreListedForPixelsWhoseFilterReachesThem) {
     const auto camera = sharp_lens();
-    const V2i corner_px(160, 100);  // of four cells
+    const V2i frame_px(64, 40), corner_px(32, 20);  // of four cells
+    const float side_m = pixel_m() * float(kSharp_px.y) / float(frame_px.y);
     for (const V2i& step : {V2i(1, 0), V2i(0, 1)})
         for (const float beyond_px : {0.1f, 0.6f}) {
-            // Of the other direction it is in the middle of the cell.
-            const V2f at_px = V2f(corner_px) + V2f(step) * beyond_px + V2f(V2i(1) - step) * 5.f;
-            const V2f off = (at_px - V2f(kSharp_px) / 2.f) * pixel_m();
+            // Of the other direction it is within the cell.
+            const V2f at_px = V2f(corner_px) + V2f(step) * beyond_px + V2f(V2i(1) - step);
+            const V2f off = (at_px - V2f(frame_px) / 2.f) * side_m;
             const SmallFeature lamp{.kind = SmallFeature::Kind::Lamp,
                                     .centre = V3f(off.x, -off.y, -kSharpFocus_m),
                                     .radius_m = 1e-5f,
                                     .reach_m = 1e-5f,
                                     .radiance = 1};
-            const auto grid = find_targets(*camera, kSharp_px, {&lamp, 1});
+            const auto grid = find_targets(*camera, frame_px, {&lamp, 1});
             ASSERT_NE(grid, nullptr);
             const auto cell = [&](V2i px) -> const TargetCell& {
-                return grid->at((V2f(px) + V2f(0.5f)) / V2f(kSharp_px));
+                return grid->at((V2f(px) + V2f(0.5f)) / V2f(frame_px));
             };
             const TargetCell &own = cell(V2i(at_px)), &before = cell(V2i(at_px) - step);
             EXPECT_NE(&own, &before);
             EXPECT_EQ(own.targets.size(), 1u) << at_px;
             EXPECT_EQ(before.targets.size(), 1u) << at_px;
-            EXPECT_TRUE(cell(V2i(at_px) - 20 * step).empty());
+            EXPECT_TRUE(cell(V2i(at_px) - 10 * step).empty());
         }
 }
 

@@ -19,6 +19,8 @@ constexpr float kMostStretched = 1000;
 /// Half-widths from the middle of the highlight at which it is found.
 constexpr float kTolerance = 0.02f;
 constexpr int kMostSteps = 12;
+/// Share of the miss that a step may leave for the next one to go by the same slopes.
+constexpr float kStraight = 0.25f;
 /// Difference of directions by which derivatives are taken, radians.
 constexpr float kDifference = 1e-4f;
 /// Surfaces of glass that a ray may meet before it leaves.
@@ -48,10 +50,9 @@ std::optional<V3f> wanted(const Met& met, const V3f& seen, const Source& lamp) {
 }
 
 /// Nothing where the image is too large or too long.
-std::optional<LampImage> finished(const V3f& eye, const V3f& direction, const Met& met, V2f by_x,
-                                  V2f by_y, float width) {
+std::optional<LampImage> finished(const V3f& eye, const V3f& direction, const Met& met,
+                                  const Linear2f& by, float width) {
     // Largest and smallest slope for a radian.
-    const Linear2f by{by_x, by_y};
     const float largest = by.most(), smallest = std::fabs(by.determinant()) / largest;
     if (!(width < kMostAngle * smallest) || !(largest < kMostStretched * smallest))
         return std::nullopt;
@@ -128,8 +129,11 @@ std::optional<Met> HighlightSearch::behind_glass(Shaded shaded, V3f direction) {
 }
 
 std::optional<LampImage> HighlightSearch::image(const V3f& eye, V3f direction, const Source& lamp,
-                                                Way way) {
+                                                Way way, const LampImage* beside) {
     std::optional<Met> here = meet(eye, direction, way);
+    // Of the miss, by the direction: known from another place, or found here.
+    std::optional<Linear2f> slopes;
+    if (beside) slopes = beside->in_half_widths * beside->met.half_width(lamp);
     for (int i = 0; i < kMostSteps && here && rays_left_ > 0; ++i) {
         const auto aim = wanted(*here, direction, lamp);
         if (!aim) break;
@@ -140,32 +144,46 @@ std::optional<LampImage> HighlightSearch::image(const V3f& eye, V3f direction, c
             const V3f off = met.aim - *other;
             return V2f(off.dot(across.x), off.dot(across.y));
         };
-        const auto moved = [&](const V3f& by) -> std::optional<V2f> {
-            const V3f seen = unit(direction + by);
-            const auto met = meet(eye, seen, way);
-            return met ? miss(*met, seen) : std::nullopt;
-        };
-        const auto f = miss(*here, direction), right = moved(kDifference * about.x),
-                   above = moved(kDifference * about.y);
-        if (!f || !right || !above) break;
-        const V2f by_x = (*right - *f) / kDifference, by_y = (*above - *f) / kDifference;
+        const auto f = miss(*here, direction);
+        if (!f) break;
         const float width = here->half_width(lamp);
-        if (f->length() < kTolerance * width) {
-            if (!(here->aim.dot(*aim) > 0.f)) break;
-            return finished(eye, direction, *here, by_x, by_y, width);
+        const bool is_there = f->length() < kTolerance * width;
+        const bool finds = !slopes || (is_there && !beside);
+        if (finds) {
+            const auto slope = [&](const V3f& along) -> std::optional<V2f> {
+                // At an edge of the object one side sees past it.
+                for (const float by : {kDifference, -kDifference}) {
+                    const V3f seen = unit(direction + by * along);
+                    const auto met = meet(eye, seen, way);
+                    if (const auto moved = met ? miss(*met, seen) : std::nullopt)
+                        return (*moved - *f) / by;
+                }
+                return std::nullopt;
+            };
+            const auto by_x = slope(about.x), by_y = slope(about.y);
+            if (!by_x || !by_y) break;
+            slopes = Linear2f{*by_x, *by_y};
         }
-        const V2f step = -Linear2f{by_x, by_y}.inverse()(*f);
-        if (!(step.length() < 1.f)) break;
+        if (is_there) {
+            if (!(here->aim.dot(*aim) > 0.f)) break;
+            return finished(eye, direction, *here, *slopes, width);
+        }
+        // Slopes of elsewhere that lead nowhere are found anew.
+        const V2f step = -slopes->inverse()(*f);
+        const float least_part = finds ? 0.1f : 0.6f;
         std::optional<Met> next;
-        for (float part = 1; part > 0.1f && !next; part /= 2) {
+        float left = 1;
+        for (float part = 1; step.length() < 1.f && part > least_part && !next; part /= 2) {
             const V3f seen = unit(direction + part * (step.x * about.x + step.y * about.y));
             const auto met = meet(eye, seen, way);
             const auto off = met ? miss(*met, seen) : std::nullopt;
             if (!off || !(off->length() < f->length())) continue;
             next = met;
             direction = seen;
+            left = off->length() / f->length();
         }
-        here = next;
+        if (next || finds) here = next;
+        if (!(left < kStraight)) slopes.reset();
     }
     return std::nullopt;
 }

@@ -85,7 +85,9 @@ class HighlightSearch {
     [[nodiscard]] std::optional<Met> meet(const V3f& eye, const V3f& direction, Way);
     /// The image of a lamp that a point of the lens sees near a direction, by Newton's method: for
     /// the direction, until the surface mirrors the lamp, or the ray behind the glass meets it.
-    [[nodiscard]] std::optional<LampImage> image(const V3f& eye, V3f direction, const Source&, Way);
+    /// beside: the same image as a point of the lens nearby sees it, whose slopes will do.
+    [[nodiscard]] std::optional<LampImage> image(const V3f& eye, V3f direction, const Source&, Way,
+                                                 const LampImage* beside = nullptr);
     /// Whether something stands between a surface and a lamp.
     [[nodiscard]] bool is_hidden(const LampImage&, const Source&);
 

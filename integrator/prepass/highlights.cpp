@@ -17,7 +17,7 @@ namespace {
 constexpr int kCell_px = 16;
 constexpr int kRaysOfCell = 16;
 /// Rays of the search for a pixel; and more, where something is found, for each image so many.
-constexpr double kSearchRays = 1. / 16, kMoreRays = 0.5;
+constexpr double kSearchRays = 1. / 16, kMoreRays = 1;
 constexpr int64_t kRaysOfImage = 400;
 /// Objects that are looked at by themselves: at most so many for a cell, of so many that are tried.
 constexpr size_t kObjectsOfCell = 4, kMostTried = 8192;
@@ -77,9 +77,14 @@ bool is_same(const SmallFeature& a, const SmallFeature& b, const V3f& eye) {
            std::fabs(along) < kSameDistance * to.length();
 }
 
+struct FoundImage {
+    SmallFeature feature;
+    V3f place;  ///< point of the object that shows it
+};
+
 /// The image of a lamp near a start, as that point of the lens and others see it.
-std::optional<SmallFeature> image_from(HighlightSearch& search, const Start& start,
-                                       const std::vector<Ray>& eyes, const Source& lamp) {
+std::optional<FoundImage> image_from(HighlightSearch& search, const Start& start,
+                                     const std::vector<Ray>& eyes, const Source& lamp) {
     const auto found = search.image(start.eye, start.direction, lamp, start.way);
     if (!found || search.is_hidden(*found, lamp)) return std::nullopt;
     std::vector<LampImage> images{*found};
@@ -87,10 +92,13 @@ std::optional<SmallFeature> image_from(HighlightSearch& search, const Start& sta
         const V3f& eye = ray.origin;
         if (images.size() == kEyes) break;
         if (eye == start.eye) continue;
-        if (const auto more = search.image(eye, unit(found->met.first - eye), lamp, start.way))
+        if (const auto more =
+                search.image(eye, unit(found->met.first - eye), lamp, start.way, &*found))
             images.push_back(*more);
     }
-    return lamp_of(std::move(images), lamp);
+    const auto feature = lamp_of(std::move(images), lamp);
+    if (!feature) return std::nullopt;
+    return FoundImage{*feature, found->met.first};
 }
 
 bool may_be_polished(const Material& m) {
@@ -98,26 +106,31 @@ bool may_be_polished(const Material& m) {
            (m.coat > 0 && m.coat_roughness <= kMostRoughness);
 }
 
-/// Middles of meshes, found as they are asked for.
-class Middles {
-  public:
-    explicit Middles(const Scene& scene) : scene_(scene), of_mesh_(scene.meshes.size()) {}
+/// An object, roughly.
+struct Ball {
+    V3f middle;
+    float radius_m;
+};
 
-    [[nodiscard]] V3f of(const Instance& instance) {
-        std::optional<V3f>& middle = of_mesh_[instance.mesh];
-        if (!middle) {
-            Box3f box;
-            for (const V3f& p : scene_.meshes[instance.mesh].positions) box.extendBy(p);
-            middle = box.center();
-        }
-        V3f out;
-        instance.to_world.multVecMatrix(*middle, out);
-        return out;
+/// Balls about objects; boxes of meshes are found as they are asked for.
+class Balls {
+  public:
+    explicit Balls(const Scene& scene) : scene_(scene), of_mesh_(scene.meshes.size()) {}
+
+    [[nodiscard]] Ball of(uint32_t instance) {
+        const Instance& placed = scene_.instances[instance];
+        Box3f& box = of_mesh_[placed.mesh];
+        if (box.isEmpty())
+            for (const V3f& p : scene_.meshes[placed.mesh].positions) box.extendBy(p);
+        V3f middle, corner;
+        placed.to_world.multVecMatrix(box.center(), middle);
+        placed.to_world.multVecMatrix(box.max, corner);
+        return {middle, (corner - middle).length()};
     }
 
   private:
     const Scene& scene_;
-    std::vector<std::optional<V3f>> of_mesh_;
+    std::vector<Box3f> of_mesh_;
 };
 
 /// Adds the polished surfaces that a ray of a cell meets first.
@@ -173,7 +186,7 @@ std::vector<Start> in_turns(const std::map<uint32_t, std::vector<Start>>& by_obj
 }
 
 SeenCells cells_of(const camera::Camera& camera, const Scene& scene, const Bvh& bvh, V2i frame_px,
-                   const camera::RunTasks& run) {
+                   Balls& balls, const camera::RunTasks& run) {
     const V2i cells = frame_px / kCell_px;
     SeenCells out;
     out.bundles.resize(static_cast<size_t>(cells.x) * static_cast<size_t>(cells.y));
@@ -191,7 +204,6 @@ SeenCells cells_of(const camera::Camera& camera, const Scene& scene, const Bvh& 
         out.eye += bundle.origin / static_cast<float>(out.bundles.size());
     // Small objects are passed by.
     size_t left = out.bundles.size() * kObjectsOfCell;
-    Middles middles(scene);
     HighlightSearch search(scene, bvh, INT64_MAX);
     const size_t step = scene.instances.size() / kMostTried + 1;
     for (size_t n = 0; n < scene.instances.size() && left > 0; n += step) {
@@ -200,7 +212,7 @@ SeenCells cells_of(const camera::Camera& camera, const Scene& scene, const Bvh& 
         if (!may_be_polished(scene.materials[scene.meshes[instance.mesh].material]) ||
             out.starts.contains(number))
             continue;
-        const V3f middle = middles.of(instance);
+        const V3f middle = balls.of(number).middle;
         const auto cell = out.towards(middle);
         if (!cell) continue;
         const V3f eye = out.bundles[*cell].rays.front().origin;
@@ -222,26 +234,41 @@ std::vector<SmallFeature> highlights(const camera::Camera& camera, const Scene& 
     const std::vector<Source> lamps = sources_of(scene, features);
     if (lamps.empty() || frame_px.x < kCell_px || frame_px.y < kCell_px) return {};
     const double pixels = double(frame_px.x) * double(frame_px.y);
-    const SeenCells seen = cells_of(camera, scene, bvh, frame_px, run);
+    Balls balls(scene);
+    const SeenCells seen = cells_of(camera, scene, bvh, frame_px, balls, run);
     HighlightSearch search(scene, bvh, static_cast<int64_t>(kSearchRays * pixels));
     auto more_rays = static_cast<int64_t>(kMoreRays * pixels);
     std::map<std::tuple<uint32_t, size_t, Way>, int> failures;  // by object, lamp and way
+    // Where the last object showed a lamp, from its middle, in its radii.
+    std::map<std::pair<size_t, Way>, V3f> places;
     std::vector<SmallFeature> out;
     for (const Start& start : in_turns(seen.starts))
         for (size_t l = 0; l < lamps.size(); ++l) {
             const Source& lamp = lamps[l];
             if (!search.may_go_on() || out.size() == kMostFound) return out;
-            int& failed = failures[{start.instance, l, start.way}];
+            const auto [entry, is_first] = failures.try_emplace({start.instance, l, start.way});
+            int& failed = entry->second;
             if (failed > kMostFailures || (start.way == Way::Through && !lamp.has_size())) continue;
-            const auto feature = image_from(search, start, seen.bundles[start.cell].rays, lamp);
+            // Another object showed it about there: drops and balls are alike.
+            std::optional<FoundImage> image;
+            const std::vector<Ray>& eyes = seen.bundles[start.cell].rays;
+            const Ball ball = balls.of(start.instance);
+            const auto shown = places.find({l, start.way});
+            if (is_first && shown != places.end()) {
+                Start there = start;
+                there.direction = unit(ball.middle + ball.radius_m * shown->second - start.eye);
+                image = image_from(search, there, eyes, lamp);
+            }
+            if (!image) image = image_from(search, start, eyes, lamp);
             const auto same = [&](const SmallFeature& other) {
-                return is_same(other, *feature, start.eye);
+                return is_same(other, image->feature, start.eye);
             };
-            if (!feature || std::any_of(out.begin(), out.end(), same)) {
+            if (!image || std::any_of(out.begin(), out.end(), same)) {
                 ++failed;
                 continue;
             }
-            out.push_back(*feature);
+            places[{l, start.way}] = (image->place - ball.middle) / ball.radius_m;
+            out.push_back(image->feature);
             // Where there is something to find, the search goes on.
             const int64_t more = std::min(more_rays, kRaysOfImage);
             search.allow(more);

@@ -142,6 +142,22 @@ TEST(Highlights, OfALampBehindABlockOfGlass) {
     EXPECT_LT(shifted->reach_m, 0.02f);
 }
 
+// Drops on a floor of their own height below the lens, smaller than a pixel: each shows the sun
+// once as a mirror and once through the water, which the rays enter near the drop's edge.
+TEST(Highlights, OfDropsAreFoundInEach) {
+    World world;
+    constexpr int kDrops = 25;
+    for (int i = 0; i < kDrops; ++i) {
+        const float away_m = 0.6f + 0.1f * float(i / 5), radius_m = 0.001f + 0.0003f * float(i % 4);
+        place(world.scene,
+              sphere(V3f(0.04f * away_m * float(i % 5 - 2), -0.1f, -away_m), radius_m, 32, true),
+              glass_material(1.33f));
+    }
+    const auto found = seen_in(world, {lamp_at(unit(V3f(0.05f, 0.64f, -0.77f)), 0.0047f, true)});
+    EXPECT_GE(found.size(), size_t(2 * kDrops - 2));
+    EXPECT_LE(found.size(), size_t(2 * kDrops));
+}
+
 // In a ball, aslant, rays of the image meet in no point. Those that the image says are met, from
 // any point of the lens, are mirrored to the lamp by a sphere.
 TEST(Highlights, OfABallAreAstigmatic) {

@@ -134,13 +134,13 @@ if is_wanted spherical_aberration; then
     jpeg spherical_aberration "${panels[@]}" --mosaic:pad=4 2x3
 fi
 # One lens of dense flint, bent for the least spherical aberration, so that colour is what is seen.
-picture chromatic_aberration 480x320 $ornaments --lens singlet:schott:N-SF11,0.7 --fov 16 \
+large chromatic_aberration $ornaments --lens singlet:schott:N-SF11,0.7 --fov 16 \
     --look-at 0,-0.1,0,0,-0.1,-1 --focal-length 200 --fstop 4 --focus 2m
 
 # The built-in scene through six cameras. Those of longer focal length stand farther back, the
 # Petzval looks a little higher, at the lamps, and the fisheye stands nearer.
 picture pinhole 480x320 $dusk
-picture thin 480x320 $dusk --fstop 2 --focus 1m
+large thin $dusk --fstop 2 --focus 1m
 large double_gauss $dusk --lens double-gauss-100mm-f2 \
     --look-at 0,1.133,0.994,0,1.02,0 --focus 2m
 large petzval $dusk --lens kodak-petzval-100mm-f2 \

@@ -220,6 +220,13 @@ TEST(NoiseReports, DoNotTrustOneStepThatFallsFast) {
     const NoiseReport said = noise_report({cell}, {0, 0, 1, 1}, *target, 4096);
     EXPECT_GT(said.noise, 0.8 * kTrue);
     EXPECT_LT(said.noise, kTrue);
+
+    // Caution does not lift it above a target that was reached; later samples tell more.
+    auto strict = *target;
+    strict.noise = 0.05;
+    EXPECT_NEAR(noise_report({cell}, {0, 0, 1, 1}, strict, 4096).noise, strict.noise, 1e-9);
+    for (SetNoise& set : cell.sets) set.taken = set.begun = 32;
+    EXPECT_LT(noise_report({cell}, {0, 0, 1, 1}, *target, 4096).noise, kTrue / 2);
 }
 
 // 400 pictures of both kinds of light: the mean of each cell against what it must be, and the error

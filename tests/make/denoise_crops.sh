@@ -5,7 +5,7 @@
 #
 #   tests/make/denoise_crops.sh [OUT [PETZVAL]]
 #
-# OUT      where the pictures go (out/denoise); crops_1.jpg and crops_2.jpg are those of the page
+# OUT      where the pictures go (out/denoise); the page has denoise_crops_1.jpg and _2.jpg of it
 # PETZVAL  the program (build/bin/petzval)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -47,5 +47,5 @@ crop glass 130,110 $scenes/glass.glb --camera ice --exposure -0.5
 crop frosted 250,70 $scenes/glass.glb --camera room
 crop gem 220,100 $scenes/gem.glb
 
-oiiotool "${rows[@]:0:5}" --mosaic:pad=2 1x5 --ch R,G,B --compression jpeg:82 -o "$out/crops_1.jpg"
-oiiotool "${rows[@]:5}" --mosaic:pad=2 1x5 --ch R,G,B --compression jpeg:82 -o "$out/crops_2.jpg"
+oiiotool "${rows[@]:0:5}" --mosaic:pad=2 1x5 --ch R,G,B --compression jpeg:82 -o "$out/denoise_crops_1.jpg"
+oiiotool "${rows[@]:5}" --mosaic:pad=2 1x5 --ch R,G,B --compression jpeg:82 -o "$out/denoise_crops_2.jpg"

@@ -82,8 +82,7 @@ void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame
         double per_pixel = 0;
         for (const ChartMethod& method : of.methods) {
             const auto& bins = method.scene.spectral.bins;
-            per_pixel +=
-                double(frame.seeds * Film::bytes_per_pixel(0, bins, {.blocks = method.to_noise}));
+            per_pixel += double(frame.seeds * Film::bytes_per_pixel(0, bins, method.keeps()));
             per_pixel += 12 * 20;  // pictures of the levels
         }
         most = std::max(most, per_pixel);

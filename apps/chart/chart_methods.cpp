@@ -369,10 +369,15 @@ std::vector<ChartCase> precision_cases(const ResolvedScene& found, const ChartSu
 std::vector<ChartCase> noise_cases(const ResolvedScene& found, const ChartSubject& subject,
                                    const SetUpView&) {
     Cases cases(ChartAxis::Noise, subject.job, "noise",
-                "as many samples of each pixel, or as each part of the frame needs");
+                "as many samples of each pixel, as each part of the frame needs, or denoised");
     const auto as_it_is = [](SceneRequest&, integrator::RenderJob&) {};
     cases.add("samples", found.request, as_it_is);
-    cases.add("noise", found.request, as_it_is).to_noise = true;
+    cases.add("noise", found.request, as_it_is).picture = ChartPicture::Noise;
+    cases
+        .add("denoised", found.request,
+             [](SceneRequest&, integrator::RenderJob& job) { job.replicates = kHalves; })
+        .picture = ChartPicture::Denoised;
+    cases.remark("denoised is biased where it blurs; its CPU time is that of the whole picture");
     cases.independent_reference("the same number of samples", found.request, as_it_is);
     return std::move(cases).result();
 }

@@ -10,6 +10,7 @@
 
 #include "apps/request/option_names.h"
 #include "apps/setup/render_setup.h"
+#include "core/film/film.h"
 #include "integrator/render/render_job.h"
 
 namespace petzval::apps {
@@ -50,11 +51,24 @@ inline constexpr auto kOptionNames<ChartAxis> =
 [[nodiscard]] std::vector<ChartAxis> parse_axes(const std::string& option,
                                                 const std::vector<std::string>& words);
 
+/// What is rendered, and shown.
+enum class ChartPicture : uint8_t {
+    Samples,   ///< as many of each pixel
+    Noise,     ///< to a noise: 1 / sqrt(n) stands for n samples
+    Denoised,  ///< what denoising makes of as many samples of each pixel
+};
+
 struct ChartMethod {
     std::string name;
     SceneRequest scene;
     integrator::RenderJob job;
-    bool to_noise = false;  ///< instead of a number of samples, n of them stand for 1 / sqrt(n)
+    ChartPicture picture = ChartPicture::Samples;
+
+    /// What a film of it keeps.
+    [[nodiscard]] FilmKeeps keeps() const {
+        return {.blocks = picture == ChartPicture::Noise,
+                .halves = picture == ChartPicture::Denoised};
+    }
 };
 
 /// Methods compared with one reference: those of an axis, or for the iris those of one shape.

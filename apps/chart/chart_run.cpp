@@ -45,12 +45,15 @@ class MethodRenders {
   public:
     MethodRenders(const ChartMethod& method, RenderSetup setup, const ChartContext& at,
                   uint32_t first_seed, uint32_t seeds)
-        : job_(method.job), setup_(std::move(setup)), at_(at), first_seed_(first_seed) {
+        : keeps_(method.keeps()),
+          job_(method.job),
+          setup_(std::move(setup)),
+          at_(at),
+          first_seed_(first_seed) {
         job_.observer = setup_.view.observer;
         tracer_.emplace(tracer_of(setup_, {}));
         const double start_s = at_.clock.cpu_s();
-        if (method.to_noise)
-            noise_ = noise_target(setup_, job_, {}, at_.frame.size, 1, at_.executor);
+        if (keeps_.blocks) noise_ = noise_target(setup_, job_, {}, at_.frame.size, 1, at_.executor);
         cpu_s_.resize(seeds, at_.clock.cpu_s() - start_s);
         for (uint32_t i = 0; i < seeds; ++i) films_.push_back(new_film());
     }
@@ -58,6 +61,22 @@ class MethodRenders {
     /// Continues one seed's render; false where it was stopped.
     [[nodiscard]] bool advance(uint32_t seed, uint32_t end_sample) {
         return render_into(films_[seed], seed, end_sample, cpu_s_[seed]);
+    }
+    /// The picture of a seed, with the CPU time of its render and of what makes the picture of it;
+    /// nothing where it was stopped.
+    struct Shown {
+        io::Picture picture;
+        double cpu_s;
+    };
+    [[nodiscard]] std::optional<Shown> shown(uint32_t i) const {
+        const double start_s = at_.clock.cpu_s();
+        std::shared_ptr<const DenoisedFilm> denoised;
+        if (keeps_.halves) {
+            denoised = denoised_film(films_[i], at_.executor, at_.monitor.stop);
+            if (!denoised) return std::nullopt;
+        }
+        const double denoising_s = at_.clock.cpu_s() - start_s;
+        return Shown{colours_of(films_[i], 3, denoised.get()), cpu_s_[i] + denoising_s};
     }
     /// After all seeds have been advanced there.
     void reached(uint32_t samples) { samples_ = samples; }
@@ -69,29 +88,25 @@ class MethodRenders {
     }
 
     [[nodiscard]] uint32_t samples() const { return samples_; }
+    /// Of the next level: a film with replicates is whole after one sample of each.
+    [[nodiscard]] uint32_t next_samples() const { return std::max(job_.replicates, 2 * samples_); }
     /// Of a pixel, on average over the seeds.
     [[nodiscard]] uint32_t mean_samples() const {
         double sum = 0;
         for (const Film& film : films_) sum += double(film.taken_count());
-        const Rect& crop = at_.frame.crop;
+        const Rect pixels = films_.front().pixels();
         return static_cast<uint32_t>(
-            std::lround(sum / double(films_.size()) / crop.width() / crop.height()));
+            std::lround(sum / double(films_.size()) / pixels.width() / pixels.height()));
     }
     [[nodiscard]] uint32_t seed_count() const { return static_cast<uint32_t>(films_.size()); }
     [[nodiscard]] uint32_t seed(uint32_t i) const { return first_seed_ + i; }
-    [[nodiscard]] double cpu_s(uint32_t i) const { return cpu_s_[i]; }
-    [[nodiscard]] io::Picture picture(uint32_t i) const { return colours_of(films_[i], 3); }
 
     double spent_s = 0, last_s = 0;  ///< wall time of all turns, and of the last level
     [[nodiscard]] double next_s() const { return 2.1 * last_s; }
 
   private:
     [[nodiscard]] Film new_film() const {
-        return {at_.frame.size,
-                at_.frame.crop,
-                {},
-                setup_.view.observer.bins(),
-                {.blocks = noise_ != nullptr}};
+        return {at_.frame.size, at_.frame.crop, {}, setup_.view.observer.bins(), keeps_};
     }
     bool render_into(Film& film, uint32_t seed, uint32_t end, double& cpu_s) {
         integrator::RenderJob job = job_;
@@ -115,6 +130,7 @@ class MethodRenders {
         return !result.stopped;
     }
 
+    FilmKeeps keeps_;
     integrator::RenderJob job_;
     RenderSetup setup_;
     const ChartContext& at_;
@@ -205,8 +221,10 @@ std::optional<ChartReference> render_reference(const ChartMethod& method, Render
     std::vector<io::Picture> parts;
     double cpu_s = 0;
     for (uint32_t i = 0; i < kReferenceReplicates; ++i) {
-        parts.push_back(renders.picture(i));
-        cpu_s += renders.cpu_s(i);
+        auto part = renders.shown(i);
+        if (!part) return std::nullopt;
+        parts.push_back(std::move(part->picture));
+        cpu_s += part->cpu_s;
     }
     ChartReference reference = reference_of(parts, at.frame.exposure_ev);
     reference.samples = renders.samples();
@@ -291,21 +309,22 @@ class CaseMeasurement {
             for (size_t k = 0; k < next.size(); ++k) {
                 MethodRenders& renders = renders_[next[(k + seed) % next.size()]];
                 const Stopwatch turn(at_.clock);
-                if (!renders.advance(seed, doubled(renders))) return false;
+                if (!renders.advance(seed, renders.next_samples())) return false;
                 renders.last_s += turn.elapsed_s();
             }
         for (const size_t i : next) {
             MethodRenders& renders = renders_[i];
             const Stopwatch turn(at_.clock);
-            renders.reached(doubled(renders));
+            renders.reached(renders.next_samples());
             ChartPoint point{renders.mean_samples(), {}};
             for (uint32_t seed = 0; seed < at_.frame.seeds; ++seed) {
-                io::Picture picture = renders.picture(seed);
+                auto shown = renders.shown(seed);
+                if (!shown) return false;
                 ChartSeed& measured =
-                    point.seeds.emplace_back(errors_of(picture, reference_.picture, flip_));
+                    point.seeds.emplace_back(errors_of(shown->picture, reference_.picture, flip_));
                 measured.seed = renders.seed(seed);
-                measured.cpu_s = renders.cpu_s(seed);
-                if (seed == 0) pictures_[i].push_back(std::move(picture));
+                measured.cpu_s = shown->cpu_s;
+                if (seed == 0) pictures_[i].push_back(std::move(shown->picture));
             }
             methods_[i].points.push_back(std::move(point));
             renders.last_s += turn.elapsed_s();
@@ -313,10 +332,6 @@ class CaseMeasurement {
         }
         return true;
     }
-    [[nodiscard]] static uint32_t doubled(const MethodRenders& renders) {
-        return std::max(1u, 2 * renders.samples());
-    }
-
     const ChartContext& at_;
     const ChartReference& reference_;
     io::Flip flip_;

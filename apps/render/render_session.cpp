@@ -264,13 +264,9 @@ integrator::RenderResult RenderSession::render_to_denoised(
 }
 
 io::Picture RenderSession::look(const integrator::RenderMonitor& monitor) {
-    io::Picture out = colours_of(*film_, 4);
-    if (!film_->keeps().halves) return out;
-    const auto denoised = denoised_ ? denoised_ : denoised_film(*film_, executor_, monitor.stop);
-    for (size_t i = 0; denoised && i < denoised->picture.colour.size(); ++i)
-        for (size_t c = 0; c < 3; ++c)
-            out.pixels[4 * i + c] = denoised->picture.colour[i][static_cast<int>(c)];
-    return out;
+    const bool denoises = film_->keeps().halves && !denoised_;
+    const auto denoised = denoises ? denoised_film(*film_, executor_, monitor.stop) : denoised_;
+    return colours_of(*film_, 4, denoised.get());
 }
 
 std::optional<integrator::NoiseReport> RenderSession::noise(const Film& film) const {

@@ -175,7 +175,7 @@ io::Metadata describe_render(const RenderSetup& setup, const integrator::RenderJ
     return m;
 }
 
-io::Picture colours_of(const Film& film, int channels) {
+io::Picture colours_of(const Film& film, int channels, const DenoisedFilm* denoised) {
     const Rect crop = film.crop();
     io::Picture out;
     out.width = crop.width();
@@ -189,7 +189,11 @@ io::Picture colours_of(const Film& film, int channels) {
                        static_cast<size_t>(out.height));
     for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x) {
-            const V4f rgba = film.colour(x, y);
+            V4f rgba = film.colour(x, y);
+            if (denoised) {
+                const V3f& rgb = denoised->picture.colour[denoised->picture.offset(x, y)];
+                rgba = {rgb.x, rgb.y, rgb.z, rgba.w};
+            }
             for (int i = 0; i < channels; ++i) out.pixels.push_back(rgba[i]);
         }
     return out;

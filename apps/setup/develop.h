@@ -25,9 +25,10 @@ inline constexpr const char* kSamples = "petzval:samples";
 [[nodiscard]] io::Metadata describe_render(const RenderSetup&, const integrator::RenderJob&,
                                            const integrator::PathOptions&);
 
-/// Picture in memory of what a film has now: R, G, B in nits, and A where four channels are asked
-/// for.
-[[nodiscard]] io::Picture colours_of(const Film&, int channels);
+/// Picture in memory of what a film has now: R, G, B in nits, denoised where that is given, and A
+/// where four channels are asked for.
+[[nodiscard]] io::Picture colours_of(const Film&, int channels,
+                                     const DenoisedFilm* denoised = nullptr);
 
 /// Picture of a film that has these samples: R, G, B, A in nits of the white point; with bins the
 /// channels S0 of io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B;

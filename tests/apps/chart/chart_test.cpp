@@ -290,6 +290,32 @@ TEST_F(ChartRun, LeavesOutAnAxisForWhichTheTimeIsTooShort) {
         << cases_[1].of.remarks.back();
 }
 
+TEST_F(ChartRun, OfNoiseDenoisesEachCountOfSamples) {
+    run(request({ChartAxis::Noise}));
+    ASSERT_EQ(cases_.size(), 1u);
+    const auto& methods = cases_[0].methods;
+    ASSERT_EQ(methods.size(), 3u);
+    const auto& samples = methods[0].points;
+    const auto& denoised = methods[2].points;
+    EXPECT_EQ(methods[2].name, "denoised");
+    ASSERT_GE(denoised.size(), 3u);
+    EXPECT_EQ(denoised.front().samples, 2u) << "each half has one";
+    for (size_t i = 0; i < denoised.size() && i + 1 < samples.size(); ++i) {
+        EXPECT_EQ(denoised[i].samples, samples[i + 1].samples);
+        EXPECT_NEAR(denoised[i].cpu_s().mean, samples[i + 1].cpu_s().mean, 1e-9);
+    }
+    const uint32_t shown = denoised[methods[2].shown].samples;
+    const io::Picture picture =
+        render({"--denoise", "--spp", std::to_string(shown)}, "denoised.exr");
+    for (size_t c = 0; c < 3; ++c) {
+        const int at = io::channel_index(picture, std::string("denoised.") + "RGB"[c]);
+        ASSERT_GE(at, 0);
+        for (size_t i = 0; i < kPixels; ++i)
+            EXPECT_EQ(methods[2].picture.pixels[3 * i + c],
+                      picture.pixels[i * picture.channels.size() + size_t(at)]);
+    }
+}
+
 // Of a lens whose light is mostly ghosts, so that few samples show it.
 TEST_F(ChartRun, OfGhostsLeavingThemOutIsOffByTheirLight) {
     ChartRequest asked = request({ChartAxis::Ghosts});

@@ -250,8 +250,11 @@ NoiseReport noise_report(const std::vector<CellNoise>& found, const Rect& cells,
             const double of_set = double(rect.width()) * double(rect.height()) / 2,
                          noise = std::sqrt(cell.decided_variance());
             for (const SetNoise& set : cell.sets) {
-                variances += of_set * set.variance(set.taken, growths.of(set));
-                cautious += of_set * set.variance(set.taken, growths.cautious(set));
+                const double plain = set.variance(set.taken, growths.of(set));
+                variances += of_set * plain;
+                // Between two powers of two slower growth may mean less variance.
+                cautious +=
+                    of_set * std::max(plain, set.variance(set.taken, growths.cautious(set)));
             }
             samples += 2 * of_set * cell.samples();
             pixels += 2 * of_set;
@@ -278,7 +281,8 @@ NoiseReport noise_report(const std::vector<CellNoise>& found, const Rect& cells,
         }
     // Caution alone does not lift a picture above a target that its cells have reached.
     const double most = pixels * target.noise * target.noise;
-    out.noise = std::sqrt(std::min(cautious, std::max(variances, most)) / pixels);
+    out.noise = std::sqrt((variances <= most ? std::min(cautious, most) : cautious) / pixels);
+    out.worst_cell = std::max(out.worst_cell, out.noise);
     out.mean_samples = samples / pixels;
     if (!known || !std::isfinite(out.samples_for_all)) out.samples_for_all = 0;
     return out;

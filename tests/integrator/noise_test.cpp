@@ -225,8 +225,30 @@ TEST(NoiseReports, DoNotTrustOneStepThatFallsFast) {
     auto strict = *target;
     strict.noise = 0.05;
     EXPECT_NEAR(noise_report({cell}, {0, 0, 1, 1}, strict, 4096).noise, strict.noise, 1e-9);
+    strict.noise = 0.03;
+    EXPECT_EQ(noise_report({cell}, {0, 0, 1, 1}, strict, 4096).noise, said.noise);
+    EXPECT_GE(said.worst_cell, said.noise);
     for (SetNoise& set : cell.sets) set.taken = set.begun = 32;
     EXPECT_LT(noise_report({cell}, {0, 0, 1, 1}, *target, 4096).noise, kTrue / 2);
+}
+
+TEST(NoiseReports, AreNotSmallerForCaution) {
+    const auto target = target_of({16, 16});
+    for (uint32_t taken = 16; taken < 32; taken += 2)
+        for (const double ratio : {2., 3., 5., 7.8, 20.}) {
+            CellNoise cell;
+            for (SetNoise& set : cell.sets)
+                set = {.taken = taken,
+                       .begun = taken,
+                       .early = ratio * 1e-4,
+                       .late = 1e-4,
+                       .last = taken > 16 ? 1e-4 : 0,
+                       .paths = 1e6,
+                       .pixels = 1e6};
+            const NoiseReport said = noise_report({cell}, {0, 0, 1, 1}, *target, 4096);
+            EXPECT_GE(said.noise, 0.99 * std::sqrt(cell.sets[0].variance(taken)))
+                << taken << ' ' << ratio;
+        }
 }
 
 // 400 pictures of both kinds of light: the mean of each cell against what it must be, and the error

@@ -133,6 +133,10 @@ std::optional<LampImage> HighlightSearch::image(const V3f& eye, V3f direction, c
     std::optional<Met> here = meet(eye, direction, way);
     // Of the miss, by the direction: known from another place, or found here.
     std::optional<Linear2f> slopes;
+    // Frames of directions nearby may be turned against each other.
+    constexpr float kSameAxes = 0.99f;
+    if (beside && Frame::about(beside->direction).x.dot(Frame::about(direction).x) < kSameAxes)
+        beside = nullptr;
     if (beside) slopes = beside->in_half_widths * beside->met.half_width(lamp);
     for (int i = 0; i < kMostSteps && here && rays_left_ > 0; ++i) {
         const auto aim = wanted(*here, direction, lamp);

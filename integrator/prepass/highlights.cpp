@@ -79,7 +79,8 @@ bool is_same(const SmallFeature& a, const SmallFeature& b, const V3f& eye) {
 
 struct FoundImage {
     SmallFeature feature;
-    V3f place;  ///< point of the object that shows it
+    uint32_t instance;  ///< object that shows it
+    V3f place;          ///< its point
 };
 
 /// The image of a lamp near a start, as that point of the lens and others see it.
@@ -98,7 +99,7 @@ std::optional<FoundImage> image_from(HighlightSearch& search, const Start& start
     }
     const auto feature = lamp_of(std::move(images), lamp);
     if (!feature) return std::nullopt;
-    return FoundImage{*feature, found->met.first};
+    return FoundImage{*feature, found->met.surface.hit.instance, found->met.first};
 }
 
 bool may_be_polished(const Material& m) {
@@ -258,6 +259,7 @@ std::vector<SmallFeature> highlights(const camera::Camera& camera, const Scene& 
                 Start there = start;
                 there.direction = unit(ball.middle + ball.radius_m * shown->second - start.eye);
                 image = image_from(search, there, eyes, lamp);
+                if (image && image->instance != start.instance) image.reset();  // it stands before
             }
             if (!image) image = image_from(search, start, eyes, lamp);
             const auto same = [&](const SmallFeature& other) {

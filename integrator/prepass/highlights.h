@@ -21,9 +21,10 @@ namespace petzval::integrator {
 /// objects that they pass by. From there Newton's method looks for the point whose normal lies
 /// half-way between the directions to the lens and to the lamp, or for the ray that glass bends to
 /// the lamp. The same for other points of the lens. At most a seventh of a ray is cast for a pixel,
-/// and half of one more where images are found; one that glass bends counts as several in the
-/// search, and as one before it. A pure function of the arguments.
-/// What each cell casts first is a task; the caller's thread does the rest.
+/// and one more where images are found; one that glass bends counts as several in the search, and
+/// as one before it. An object is looked at first where the one before showed the lamp. A pure
+/// function of the arguments. What each cell casts first is a task; the caller's thread does the
+/// rest.
 [[nodiscard]] std::vector<SmallFeature> highlights(const camera::Camera&, const Scene&, const Bvh&,
                                                    V2i frame_px,
                                                    std::span<const SmallFeature> features,

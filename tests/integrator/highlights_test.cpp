@@ -142,8 +142,8 @@ TEST(Highlights, OfALampBehindABlockOfGlass) {
     EXPECT_LT(shifted->reach_m, 0.02f);
 }
 
-// Drops on a floor of their own height below the lens, smaller than a pixel: each shows the sun
-// once as a mirror and once through the water, which the rays enter near the drop's edge.
+// Drops below the lens, smaller than a pixel: each shows the sun once as a mirror and once through
+// the water, which the rays enter near the drop's edge.
 TEST(Highlights, OfDropsAreFoundInEach) {
     World world;
     constexpr int kDrops = 25;

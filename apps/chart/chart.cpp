@@ -77,17 +77,19 @@ void leave_out_part_cells(ChartCase& of, const ChartFrame& frame) {
 }
 
 void require_memory(const std::vector<ChartCase>& cases, const ChartFrame& frame) {
-    double most = 0;
+    double needed = 0;
     for (const ChartCase& of : cases) {
-        double per_pixel = 0;
+        double bytes = 0;
         for (const ChartMethod& method : of.methods) {
             const auto& bins = method.scene.spectral.bins;
-            per_pixel += double(frame.seeds * Film::bytes_per_pixel(0, bins, method.keeps()));
-            per_pixel += 12 * 20;  // pictures of the levels
+            const Rect kept = Film::pixels_for(frame.crop, frame.size, method.keeps());
+            bytes += double(kept.width()) * double(kept.height()) *
+                     double(frame.seeds * Film::bytes_per_pixel(0, bins, method.keeps()));
+            constexpr int kLevels = 20, kBytesOfPicture = 12;
+            bytes += double(kLevels) * kBytesOfPicture * frame.crop.width() * frame.crop.height();
         }
-        most = std::max(most, per_pixel);
+        needed = std::max(needed, bytes);
     }
-    const double needed = most * frame.crop.width() * frame.crop.height();
     if (const auto shortage = memory_shortage(needed))
         throw io::ArgumentError("⟨size⟩", "",
                                 *shortage + "; give a smaller ⟨size⟩, a ⟨crop⟩ or fewer ⟨seeds⟩");

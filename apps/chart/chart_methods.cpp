@@ -369,7 +369,7 @@ std::vector<ChartCase> precision_cases(const ResolvedScene& found, const ChartSu
 std::vector<ChartCase> noise_cases(const ResolvedScene& found, const ChartSubject& subject,
                                    const SetUpView&) {
     Cases cases(ChartAxis::Noise, subject.job, "noise",
-                "as many samples of each pixel, as each part of the frame needs, or denoised");
+                "equal samples for all pixels, as many as each part needs, and denoising");
     const auto as_it_is = [](SceneRequest&, integrator::RenderJob&) {};
     cases.add("samples", found.request, as_it_is);
     cases.add("noise", found.request, as_it_is).picture = ChartPicture::Noise;
@@ -377,7 +377,10 @@ std::vector<ChartCase> noise_cases(const ResolvedScene& found, const ChartSubjec
         .add("denoised", found.request,
              [](SceneRequest&, integrator::RenderJob& job) { job.replicates = kHalves; })
         .picture = ChartPicture::Denoised;
-    cases.remark("denoised is biased where it blurs; its CPU time is that of the whole picture");
+    cases.remark(
+        "denoised is biased where it blurs; its CPU time is that of the render and of denoising "
+        "all "
+        "of its picture");
     cases.independent_reference("the same number of samples", found.request, as_it_is);
     return std::move(cases).result();
 }

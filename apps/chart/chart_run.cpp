@@ -88,8 +88,10 @@ class MethodRenders {
     }
 
     [[nodiscard]] uint32_t samples() const { return samples_; }
-    /// Of the next level: a film with replicates is whole after one sample of each.
-    [[nodiscard]] uint32_t next_samples() const { return std::max(job_.replicates, 2 * samples_); }
+    /// Of the next level; each half of a film has a sample.
+    [[nodiscard]] uint32_t next_samples() const {
+        return std::max(keeps_.halves ? kHalves : 1, 2 * samples_);
+    }
     /// Of a pixel, on average over the seeds.
     [[nodiscard]] uint32_t mean_samples() const {
         double sum = 0;
@@ -248,9 +250,13 @@ class CaseMeasurement {
     /// False where it was stopped.
     [[nodiscard]] bool run(double budget_s) {
         const Stopwatch clock(at_.clock);
-        for (MethodRenders& renders : renders_)
+        double first_level_s = 0;
+        for (MethodRenders& renders : renders_) {
+            const Stopwatch one(at_.clock);
             if (!renders.warm_up()) return false;
-        require_time(clock.elapsed_s() * (1 + at_.frame.seeds), budget_s, "all methods");
+            first_level_s += one.elapsed_s() * at_.frame.seeds * renders.next_samples();
+        }
+        require_time(clock.elapsed_s() + first_level_s, budget_s, "all methods");
         const double share_s = budget_s / static_cast<double>(renders_.size());
         for (;;) {
             const auto next = chosen(share_s, budget_s - clock.elapsed_s());

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests of what bench.py computes, on pictures whose noise is known."""
+"""Tests of what bench.py and until.py compute, on pictures whose noise is known."""
 import json
 import math
 import os
@@ -60,6 +60,58 @@ class Noise(unittest.TestCase):
         pictures = noisy(.1)
         self.assertAlmostEqual(noise.error_against(pictures, numpy.ones(pictures.shape[1:]))["plain"],
                                noise.summaries(noise.pixel_errors(pictures))["plain"], delta=1e-4)
+
+
+class TrueError(unittest.TestCase):
+    def test_is_that_of_the_pictures_and_not_of_the_two_that_they_are_held_against(self):
+        dice = numpy.random.default_rng(3)
+        one, other, first, second = (1 + dice.normal(0, sigma, (100, 100, 3)) for sigma in (.1, .1, .2, .2))
+        found = noise.true_error([one, other], first, second)
+        scale = math.sqrt(1 + .25 ** 2)  # the floor is a quarter of the mid-grey, of 1 here
+        self.assertAlmostEqual(found["all"], .1 / scale, delta=.003)
+        self.assertAlmostEqual(found["trimmed"], .1 / scale, delta=.004)
+        self.assertAlmostEqual(noise.error_of_each(first, second)["all"], .2 / scale, delta=.003)
+
+    def test_is_not_less_than_it_can_be_known(self):
+        dice = numpy.random.default_rng(4)
+        first, second = (1 + dice.normal(0, .5, (96, 96, 3)) for _ in "12")
+        found = noise.true_error([numpy.ones((96, 96, 3))], first, second)
+        self.assertGreaterEqual(found["all"] ** 2, found["deviation_of_square"] * (1 - 1e-9))
+        self.assertLess(found["all"], .1)
+
+    def test_knows_the_mean_of_neighbours_at_edges_too(self):
+        self.assertTrue(numpy.allclose(noise.surroundings(numpy.full((9, 12, 3), 2.)), 2))
+        ramp = numpy.arange(20.).reshape(1, 20, 1) * numpy.ones((10, 1, 3))
+        found = noise.surroundings(ramp)
+        self.assertAlmostEqual(found[4, 10, 0], 10)
+        self.assertAlmostEqual(found[0, 0, 0], 1.5)  # of 0 to 3
+
+    def test_the_worst_pixels_are_left_out_of_the_trimmed(self):
+        picture = numpy.ones((96, 96, 3))
+        picture[50, 50] = 97
+        found = noise.true_error([picture], *(numpy.ones_like(picture),) * 2)
+        self.assertAlmostEqual(found["all"], 1 / math.sqrt(1.0625), delta=1e-6)
+        self.assertEqual(found["trimmed"], 0)
+
+    def test_a_black_picture_has_no_error(self):
+        black = numpy.zeros((32, 32, 3))
+        self.assertEqual(noise.true_error([black], black, black)["all"], 0)
+
+
+class Until(unittest.TestCase):
+    POINTS = [{"cpu_s": 1, "all": .4}, {"cpu_s": 4, "all": .2}, {"cpu_s": 64, "all": .05}]
+
+    def test_is_on_the_line_between_two_points(self):
+        for wanted, cpu_s in ((.2, 4), (.1, 16)):
+            found, known = table.cpu_s_at(wanted, self.POINTS, "all")
+            self.assertAlmostEqual(found, cpu_s)
+            self.assertEqual(known, "")
+
+    def test_is_a_guess_or_a_bound_beyond_them(self):
+        found, known = table.cpu_s_at(.025, self.POINTS, "all")
+        self.assertAlmostEqual(found, 256)
+        self.assertEqual(known, "about ")
+        self.assertEqual(table.cpu_s_at(.5, self.POINTS, "all"), (1, "at most "))
 
 
 class Table(unittest.TestCase):

@@ -3,7 +3,7 @@
 
     blender -b --factory-startup -noaudio -P cycles.py -- '{"scene": "a.glb", "output": "a.exr", ...}'
 
-Run by bench.py; programs.py says what the JSON holds. For Blender 3.4 and 5.2, whose names for the
+Run by programs.py, which says what the JSON holds. For Blender 3.4 and 5.2, whose names for the
 same things differ. Prints "CYCLES done" at its end, as Blender's exit status tells nothing of scripts.
 """
 import json
@@ -146,7 +146,10 @@ def set_render(scene):
     cycles.device = "CPU"
     set_first(cycles, "sampling_pattern", [wanted["pattern"]] if wanted["pattern"] else PATTERNS)
     cycles.samples, cycles.seed = wanted["samples"], wanted["seed"]
-    cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = False
+    cycles.use_adaptive_sampling = bool(wanted["noise_threshold"])
+    if wanted["noise_threshold"]:
+        cycles.adaptive_threshold, cycles.adaptive_min_samples = wanted["noise_threshold"], 0  # 0: its own choice
+    cycles.use_denoising = cycles.use_fast_gi = False
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.light_sampling_threshold = cycles.blur_glossy = 0
     cycles.min_light_bounces = cycles.min_transparent_bounces = 0

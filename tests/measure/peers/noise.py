@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Noise of pictures from their variance over seeds, with intervals, for bench.py."""
+"""Noise of pictures: from their variance over seeds, with intervals, and against pictures of other seeds."""
 import math
 
 import numpy
@@ -46,6 +46,54 @@ def error_against(pictures, reference):
     dark = DARK_SHARE * (reference.mean(0) ** 2).sum()
     squares = ((numpy.asarray(pictures, float) - reference) ** 2).mean(0).sum(-1)
     return summaries(squares / ((reference ** 2).sum(-1) + dark))
+
+
+def surroundings(picture):
+    """Mean of the 7 x 7 pixels about each pixel of (height, width, 3), as far as they lie in the picture."""
+    def windows(values):
+        sums = numpy.pad(values.cumsum(0).cumsum(1), ((1, 0), (1, 0), (0, 0)))
+        rows, columns = (numpy.arange(n) for n in values.shape[:2])
+        y0, y1 = (rows - 3).clip(0), (rows + 4).clip(None, values.shape[0])
+        x0, x1 = (columns - 3).clip(0), (columns + 4).clip(None, values.shape[1])
+        return sums[y1][:, x1] - sums[y0][:, x1] - sums[y1][:, x0] + sums[y0][:, x0]
+    return windows(picture) / windows(numpy.ones_like(picture))
+
+
+def floor_of(picture):
+    """A quarter of the mid-grey: of the log-average of the luminance, weighted by its cube root."""
+    light = (picture @ (.2126, .7152, .0722)).ravel()
+    light = light[light > 0]
+    if not len(light):
+        return 0.
+    return .25 * math.exp((numpy.cbrt(light) * numpy.log(light)).sum() / numpy.cbrt(light).sum())
+
+
+def scale_of(truth):
+    """What squared errors are divided by: m^2 + f^2 of `petzval render --denoise`, (height, width, 3)."""
+    return numpy.maximum(surroundings(truth) ** 2 + floor_of(truth) ** 2, 1e-30)
+
+
+def roots(squares):
+    """Root of the mean of (height, width) squares, and without the 0.1 % of the pixels that are farthest from 0, with
+    the standard error of the mean, from blocks of 16 x 16. What is below it counts as large as it."""
+    rows, columns = (n // 16 * 16 for n in squares.shape)
+    blocks = squares[:rows, :columns].reshape(rows // 16, 16, columns // 16, 16).mean((1, 3)).ravel()
+    deviation = blocks.std(ddof=1) / math.sqrt(len(blocks))
+    flat = squares.ravel()
+    kept = flat[numpy.argsort(abs(flat))][:len(flat) - math.ceil(TRIMMED_SHARE * len(flat))]
+    return {"all": math.sqrt(max(flat.mean(), deviation)), "trimmed": math.sqrt(max(kept.mean(), 0)),
+            "deviation_of_square": deviation}
+
+
+def true_error(pictures, first, second):
+    """roots() of the errors of pictures, without the noise of the two others that they are held against."""
+    scale = scale_of((first + second) / 2)
+    return roots(numpy.mean([((p - first) * (p - second) / scale).mean(-1) for p in pictures], 0))
+
+
+def error_of_each(first, second):
+    """roots() of the error of either of two pictures of the same samples, by their difference."""
+    return roots(((first - second) ** 2 / 2 / scale_of((first + second) / 2)).mean(-1))
 
 
 def student(freedom):

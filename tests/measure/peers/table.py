@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tables of bench.py, Petzval over each peer, the worst row first, and of efficiency.py, new over old."""
+"""The tables of bench.py and until.py, Petzval over each peer, the worst row first, and of efficiency.py."""
+import math
+
 import numpy
 
 import noise
@@ -92,3 +94,36 @@ def markdown(done, names):
         text += line("geometric mean", mean_of(list(rows.values()))) + "\n"
         text += line("worst row: " + order[0], rows[order[0]]) + "\n\n"
     return text + "".join(converged(done, name) for name in names)
+
+
+def cpu_s_at(wanted, points, which):
+    """CPU time at that error, on the line through the points about it in logarithms, and whether it is known. Where no
+    point reached it, it is as if the error went on to fall as 1 / sqrt(time); where all did, it is at most that."""
+    after = next((i for i, p in enumerate(points) if p[which] <= wanted), None)
+    if after is None:
+        return points[-1]["cpu_s"] * (points[-1][which] / wanted) ** 2, "about "
+    if after == 0:
+        return points[0]["cpu_s"], "at most "
+    a, b = points[after - 1], points[after]
+    share = math.log(a[which] / wanted) / math.log(a[which] / max(b[which], wanted / 8))
+    return a["cpu_s"] * (b["cpu_s"] / a["cpu_s"]) ** share, ""
+
+
+def until(rows, wanted):
+    """The table of until.py: CPU times to the error, the worst row first."""
+    lines = []
+    for name, numbers in rows.items():
+        def times(which):
+            found = [cpu_s_at(wanted, p["points"], which) for p in numbers.values()]
+            even = numbers["cycles"]["even"]
+            found[2] = min(found[2], (even["cpu_s"] * (even[which] / wanted) ** 2, "about "))
+            return found
+        cells = ["%s%.3g s" % (known, cpu_s) for cpu_s, known in times("all")]
+        for which in ("all", "trimmed"):
+            (denoised, _), (plain, _), (cycles, _) = times(which)
+            cells += ["%.3g, %.3g" % (cycles / plain, cycles / denoised)]
+        (_, _), (plain, _), (cycles, _) = times("all")
+        lines.append((cycles / plain, "| %s | %s |" % (name, " | ".join(cells))))
+    head = ("| CPU time to %g %% | Petzval denoised | Petzval | Cycles, not denoised | Cycles over Petzval, and over it "
+            "denoised | without the worst 0.1 %% of the pixels |\n|%s\n" % (100 * wanted, "---|" * 6))
+    return head + "\n".join(line for _, line in sorted(lines)) + "\n"

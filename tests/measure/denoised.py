@@ -38,7 +38,7 @@ LENSES = {
     "glass": (os.path.join(scenes.ASSETS, "glass.glb"), "--camera", "ice", "--lens", "double-gauss-100mm-f2"),
     "caustic": (os.path.join(scenes.ASSETS, "gem.glb"), "--lens", "double-gauss-100mm-f2"),
 }
-FOLIAGE = ("--lens", "takumar-50mm-f1.2", "--focus", "1.2m")
+FOLIAGE = ("--lens", "takumar-50mm-f1.2", "--focus", "1.2m", "--method", "fit=fov")
 
 
 def view_of(row):
@@ -73,6 +73,8 @@ def measure(a, words, report):
                "-o", report]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                           text=True)
+    if done.returncode == 2 and "--budget" in done.stderr:
+        return {}
     if done.returncode:
         sys.exit("exit status %d of %s:\n%s" % (done.returncode, " ".join(command), done.stderr))
     return means(os.path.join(report, "points.csv"))

@@ -377,10 +377,7 @@ std::vector<ChartCase> noise_cases(const ResolvedScene& found, const ChartSubjec
         .add("denoised", found.request,
              [](SceneRequest&, integrator::RenderJob& job) { job.replicates = kHalves; })
         .picture = ChartPicture::Denoised;
-    cases.remark(
-        "denoised is biased where it blurs; its CPU time is that of the render and of denoising "
-        "all "
-        "of its picture");
+    cases.remark("denoised is biased where it blurs; its CPU time includes that of denoising");
     cases.independent_reference("the same number of samples", found.request, as_it_is);
     return std::move(cases).result();
 }

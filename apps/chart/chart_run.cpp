@@ -338,6 +338,7 @@ class CaseMeasurement {
         }
         return true;
     }
+
     const ChartContext& at_;
     const ChartReference& reference_;
     io::Flip flip_;

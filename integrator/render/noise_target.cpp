@@ -279,9 +279,10 @@ NoiseReport noise_report(const std::vector<CellNoise>& found, const Rect& cells,
                     std::max(0., std::min(needed, double(most_samples)) - cell.sets[k].taken);
             }
         }
-    // Caution alone does not lift a picture above a target that its cells have reached.
+    // Caution alone does not lift a picture above a target that all its cells have reached.
     const double most = pixels * target.noise * target.noise;
-    out.noise = std::sqrt((variances <= most ? std::min(cautious, most) : cautious) / pixels);
+    if (out.left == 0) cautious = std::min(cautious, std::max(variances, most));
+    out.noise = std::sqrt(cautious / pixels);
     out.worst_cell = std::max(out.worst_cell, out.noise);
     out.mean_samples = samples / pixels;
     if (!known || !std::isfinite(out.samples_for_all)) out.samples_for_all = 0;

@@ -95,10 +95,10 @@ struct NoiseReport {
     /// Of the picture; infinite where a cell has too few samples to tell. Of each set by itself,
     /// which did not decide about it: what a set decided by is too small on average, as it stops
     /// the other one where it looks small.
-    /// With fewer than 32 samples it is a cautious figure, which does not lift it above the target.
+    /// With fewer than 32 samples it is a cautious figure, but caution does not lift it above the
+    /// target where all cells have reached that.
     double noise = 0;
-    double worst_cell =
-        0;  ///< largest noise of a cell, likewise, and not below that of the picture
+    double worst_cell = 0;  ///< largest noise of a cell, likewise, or that of the picture
     double floor_nits = 0;  ///< of both
     /// All cells; those above the target; and of these those that may take more samples, and those
     /// whose noise is unknown.

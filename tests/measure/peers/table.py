@@ -115,8 +115,8 @@ def until(rows, wanted):
     def times(numbers, which):
         found = {}
         for name, p in numbers.items():
-            def is_known(point):  # single pixels may hold the error
-                return which == "trimmed" or point["deviation_of_square"] < point["all"] ** 2 / 2
+            def is_known(point):  # to a fifth: single pixels may hold the error
+                return which == "trimmed" or point["deviation_of_square"] < .4 * point["all"] ** 2
             ways = [cpu_s_at(wanted, p["points"], which)] if is_known(p["points"][-1]) else []
             if name != "petzval denoised" and is_known(p["even"]):
                 ways.append((p["even"]["cpu_s"] * (p["even"][which] / wanted) ** 2, "about "))

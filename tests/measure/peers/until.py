@@ -5,8 +5,8 @@
     until.py [--scenes DIR] [--petzval PATH] [--peer PATH] [--rows a,b] [--error 0.05] -o FOLDER
 
 Each renders anew with ever smaller targets until the true error is small enough, or the next render would take more
-than --longest-cpu-s; a quarter of it where nothing is denoised. There the same samples everywhere count too, if they are
-quicker to the error. The true error comes from two other pictures of the same program. FOLDER/until.json holds all
+than --longest-cpu-s; a quarter of it where nothing is denoised. There the same samples everywhere count too, if they
+are quicker to the error. The true error comes from two other pictures of the same program. FOLDER/until.json holds all
 numbers; rows that it holds already are not measured again. docs/measured/against_cycles.md explains the table.
 """
 import argparse

@@ -28,6 +28,12 @@ struct Rect {
     bool operator==(const Rect&) const = default;
 };
 
+/// A rectangle with so many pixels more on each side, as far as `within` goes.
+[[nodiscard]] inline Rect grown(const Rect& r, int by_px, const Rect& within) {
+    return {std::max(r.x0 - by_px, within.x0), std::max(r.y0 - by_px, within.y0),
+            std::min(r.x1 + by_px, within.x1), std::min(r.y1 + by_px, within.y1)};
+}
+
 /// One finished sample of a pixel.
 struct FilmSample {
     Rgb colour;

@@ -51,9 +51,7 @@ Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> 
 
 Rect Film::pixels_for(const Rect& crop, V2i full_size, FilmKeeps keeps) {
     if (!keeps.halves) return crop;
-    constexpr int kMore = kDenoiserReach_px;
-    return {std::max(0, crop.x0 - kMore), std::max(0, crop.y0 - kMore),
-            std::min(full_size.x, crop.x1 + kMore), std::min(full_size.y, crop.y1 + kMore)};
+    return grown(crop, kDenoiserReach_px, {0, 0, full_size.x, full_size.y});
 }
 
 size_t Film::bytes_per_pixel(size_t layers, const std::optional<Bins>& bins, FilmKeeps keeps) {

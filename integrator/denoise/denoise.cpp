@@ -14,7 +14,7 @@ constexpr int kTile = kDenoiserTile_px, kSide = HalfTile::kSide;
 /// Radius of the window, whose pixels a pixel is estimated from.
 constexpr int kWindow_px = 7;
 constexpr int kOffsets = (2 * kWindow_px + 1) * (2 * kWindow_px + 1);
-static_assert(kWindow_px + 1 + 2 + 2 <= kDenoiserReach_px,
+static_assert(kWindow_px + 1 + 2 + 2 <= HalfTile::kReach,
               "the window, patches, shared variances and lonely pixels");
 
 // Factors on differences of guides that bring them to about 1: of the distance's logarithm, where
@@ -204,48 +204,20 @@ std::array<f8, 3> Regression::colour() const {
     return sum;
 }
 
-using TileColours = std::array<std::array<float, kTile * kTile>, 3>;
-
-// Estimates of a tile from one half of its samples.
-void denoise_half(const Film& film, const Rect& tile, uint32_t number, TileColours& out) {
-    const auto half = std::make_unique<HalfTile>(film, V2i(tile.x0, tile.y0), number);
-    const WindowWeights weights(*half);
-    for (int y = 0; y < tile.height(); ++y)
-        for (int x = 0; x < tile.width(); x += 8) {
-            const auto colour = Regression(*half, weights, x, y).colour();
-            for (size_t c = 0; c < 3; ++c)
-                store8(&out[c][static_cast<size_t>(y * kTile + x)], colour[c]);
-        }
-}
-
 }  // namespace
 
-// The error follows from what is known of independent halves A and B: D(A) knows nothing of B's
-// noise, so that A B - D(A) B - D(B) A + ((D(A) + D(B)) / 2)^2 is on average the square of what the
-// mean of D(A) and D(B) is off.
-void denoise_tile(const Film& film, const Rect& tile, Denoised& out) {
-    std::array<TileColours, kHalves> found;
-    for (uint32_t half = 0; half < kHalves; ++half) denoise_half(film, tile, half, found[half]);
-    for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x) {
-            const auto at = static_cast<size_t>((y - tile.y0) * kTile + (x - tile.x0));
-            const V3f a = film.half(x, y, 0).colour, b = film.half(x, y, 1).colour;
-            V3f &colour = out.colour[out.offset(x, y)],
-                &error = out.squared_error[out.offset(x, y)];
-            if (film.sample_count(x, y) < kHalves) {  // one half knows nothing
-                const V4f all = film.colour(x, y);
-                colour = {all.x, all.y, all.z};
-                error = colour * colour;
-                continue;
+void estimate_tile(const Film& film, const Rect& tile, HalfEstimates& out) {
+    for (uint32_t number = 0; number < kHalves; ++number) {
+        const auto half = std::make_unique<HalfTile>(film, V2i(tile.x0, tile.y0), number);
+        const WindowWeights weights(*half);
+        for (int y = 0; y < tile.height(); ++y)
+            for (int x = 0; x < tile.width(); x += 8) {
+                const auto colour = Regression(*half, weights, x, y).colour();
+                for (int lane = 0; lane < std::min(8, tile.width() - x); ++lane)
+                    out.colour[number][out.offset(tile.x0 + x + lane, tile.y0 + y)] = {
+                        colour[0][lane], colour[1][lane], colour[2][lane]};
             }
-            for (int c = 0; c < 3; ++c) {
-                const double of_a = double(found[0][size_t(c)][at]),
-                             of_b = double(found[1][size_t(c)][at]), mean = (of_a + of_b) / 2;
-                colour[c] = static_cast<float>(mean);
-                error[c] = static_cast<float>(double(a[c]) * double(b[c]) - of_a * double(b[c]) -
-                                              of_b * double(a[c]) + mean * mean);
-            }
-        }
+    }
 }
 
 }  // namespace petzval::integrator

@@ -26,7 +26,8 @@ inline void store8(float* to, f8 value) {
 
 /// Planes of numbers about a tile. Pixels beyond the frame are 0, and so is `inside` there.
 struct HalfTile {
-    static constexpr int kReach = kDenoiserReach_px, kSide = kDenoiserTile_px + 2 * kReach;
+    static constexpr int kReach = kDenoiserReach_px - kShrinkageReach_px,
+                         kSide = kDenoiserTile_px + 2 * kReach;
     /// One more row of eight: what is read eight at once may begin at the last number.
     using Plane = std::array<float, kSide * kSide + 8>;
 

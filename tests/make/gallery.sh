@@ -100,17 +100,16 @@ fi
 # five.
 picture focus_1_aperture_0.1 480x320 $ornaments --method lens-radius=0.01 --focus 1m
 picture focus_2_aperture_0.1 480x320 $ornaments --method lens-radius=0.01 --focus 2m
-picture focus_2_aperture_0.5 480x320 $ornaments --method lens-radius=0.05 --focus 2m
-more=4 # discs so large that their noise shows
-picture focus_1_aperture_0.5 480x320 $ornaments --method lens-radius=0.05 --focus 1m
+more=2 # discs whose noise shows
+large focus_1_aperture_0.5 $ornaments --method lens-radius=0.05 --focus 1m
+large focus_2_aperture_0.5 $ornaments --method lens-radius=0.05 --focus 2m
 
 # The four shapes, in the round iris's area: every lamp becomes one. The narrow view has large ones.
-more=2
+more=1
 for iris in triangle rhomboid star:5 frame; do
-    picture "iris_${iris%:*}" 480x320 $ornaments --lens thin --fov 26 --method lens-radius=0.045 \
+    large "iris_${iris%:*}" $ornaments --lens thin --fov 26 --method lens-radius=0.045 \
         --focus 1m --aperture "$iris"
 done
-more=1
 
 # An ideal lens on the left, one of N-BK7 on the right; shared wavelengths leave its colours out.
 # First what is sharp; then lamps behind and before the sharp plane, from between ornaments and

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far a picture goes from what its samples show to what a regression makes of them: all the way
+// where noise is more than what the regression blurs, and less where it is less.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/film/film.h"
+
+namespace petzval::integrator {
+
+/// Pixels around a pixel that tell how much of its noise is taken away.
+inline constexpr int kShrinkageRadius_px = 7;
+/// How far away estimates are looked at: the mean brightness of each of these pixels is that of
+/// pixels about it.
+inline constexpr int kShrinkageReach_px = 2 * kShrinkageRadius_px;
+
+/// Estimates of a picture's pixels from each half of their samples, row by row.
+struct HalfEstimates {
+    Rect pixels;
+    std::array<std::vector<V3f>, kHalves> colour;  ///< nits
+
+    explicit HalfEstimates(const Rect& of) : pixels(of) {
+        for (auto& half : colour)
+            half.resize(static_cast<size_t>(of.width()) * static_cast<size_t>(of.height()));
+    }
+    [[nodiscard]] size_t offset(int x, int y) const {
+        return static_cast<size_t>(y - pixels.y0) * pixels.width() + (x - pixels.x0);
+    }
+};
+
+/// Denoised picture of a film's crop, row by row.
+struct Denoised {
+    Rect crop;
+    std::vector<V3f> colour;  ///< nits: between the mean of both halves and that of their estimates
+    /// (colour - truth)^2 of R, G and B, nits^2, without bias: it may be negative, and says little
+    /// of one pixel and much of a thousand.
+    std::vector<V3f> squared_error;
+
+    [[nodiscard]] size_t offset(int x, int y) const {
+        return static_cast<size_t>(y - crop.y0) * crop.width() + (x - crop.x0);
+    }
+};
+
+/// Writes the denoised pixels of a tile, and their squared errors. The film has two halves, and
+/// their estimates are there up to kShrinkageReach_px away from the tile, as far as the frame goes.
+void shrink_tile(const Film&, const HalfEstimates&, const Rect& tile, Denoised&);
+
+}  // namespace petzval::integrator

@@ -34,7 +34,7 @@ f8 exp_minus(f8 a) {
     return root * root * (f8)((whole + 127) << 23);
 }
 
-/// Weights of the pixels of a window, for all pixels of a tile.
+/// Weights of the pixels of a window, for all pixels of a tile, for an estimate that keeps detail.
 class WindowWeights {
   public:
     explicit WindowWeights(const HalfTile& half) : half_(half), weights_(kOffsets * kTile * kTile) {
@@ -60,7 +60,7 @@ class WindowWeights {
 // (Rousselle, Knaus and Zwicker 2012, "Adaptive Rendering with Non-Local Means Filtering",
 // equation 3).
 f8 WindowWeights::distance(int i, int offset, f8& both) const {
-    constexpr float kPrecision = 0.25f;  // k^2 of that equation
+    constexpr float kPrecision = 0.25f;  // k^2 of that equation; 1 for the smoother estimate
     const auto p = static_cast<size_t>(i), q = static_cast<size_t>(i + offset);
     f8 sum = splat8(0);
     for (size_t c = 0; c < 3; ++c) {
@@ -111,8 +111,13 @@ using Regressors = std::array<f8, kRegressors>;
 /// sum over its window, of which the shares are solved for.
 class Regression {
   public:
-    Regression(const HalfTile& half, const WindowWeights& weights, int x, int y)
-        : half_(half), weights_(weights), x_(x), y_(y), centre_(HalfTile::index(x, y)) {
+    Regression(const HalfTile& half, const WindowWeights& weights, bool is_smoother, int x, int y)
+        : half_(half),
+          weights_(weights),
+          is_smoother_(is_smoother),
+          x_(x),
+          y_(y),
+          centre_(HalfTile::index(x, y)) {
         for (size_t g = 0; g < kGuideNumbers; ++g)
             own_[g] = load8(&half.guide[g][static_cast<size_t>(centre_)]);
         add_up();
@@ -129,7 +134,8 @@ class Regression {
         int n = 0;
         for (int dy = -kWindow_px; dy <= kWindow_px; ++dy)
             for (int dx = -kWindow_px; dx <= kWindow_px; ++dx, ++n) {
-                const f8 weight = weights_.of(n, x_, y_);
+                f8 weight = weights_.of(n, x_, y_);
+                if (is_smoother_) weight = sqrt(sqrt(weight));  // e^-a/4: four times k^2
                 constexpr float kLeast = 1e-4f;
                 const m8 counts = weight > kLeast;
                 if (_mm256_movemask_ps((__m256)counts) == 0) continue;
@@ -148,6 +154,7 @@ class Regression {
 
     const HalfTile& half_;
     const WindowWeights& weights_;
+    bool is_smoother_;
     int x_, y_, centre_;
     std::array<f8, kGuideNumbers> own_;
     std::array<Regressors, kRegressors> matrix_{};  ///< lower half; then its Cholesky factor
@@ -210,13 +217,14 @@ void estimate_tile(const Film& film, const Rect& tile, HalfEstimates& out) {
     for (uint32_t number = 0; number < kHalves; ++number) {
         const auto half = std::make_unique<HalfTile>(film, V2i(tile.x0, tile.y0), number);
         const WindowWeights weights(*half);
-        for (int y = 0; y < tile.height(); ++y)
-            for (int x = 0; x < tile.width(); x += 8) {
-                const auto colour = Regression(*half, weights, x, y).colour();
-                for (int lane = 0; lane < std::min(8, tile.width() - x); ++lane)
-                    out.colour[number][out.offset(tile.x0 + x + lane, tile.y0 + y)] = {
-                        colour[0][lane], colour[1][lane], colour[2][lane]};
-            }
+        for (size_t estimate = 0; estimate < kEstimates; ++estimate)
+            for (int y = 0; y < tile.height(); ++y)
+                for (int x = 0; x < tile.width(); x += 8) {
+                    const auto colour = Regression(*half, weights, estimate == 1, x, y).colour();
+                    for (int lane = 0; lane < std::min(8, tile.width() - x); ++lane)
+                        out.colour[number][estimate][out.offset(tile.x0 + x + lane, tile.y0 + y)] =
+                            {colour[0][lane], colour[1][lane], colour[2][lane]};
+                }
     }
 }
 

@@ -7,37 +7,85 @@
 namespace petzval::integrator {
 namespace {
 
-using Imath::V3d;
+using Imath::V2d, Imath::V3d;
 
-/// Two halves of a pixel, and the estimates that were made of each.
+/// Two halves of a pixel, and the ways from them to what is estimated of each.
 struct PixelHalves {
-    V3d a, b, of_a, of_b;
+    V3d a, b;
+    std::array<V3d, kEstimates> to_a, to_b;
 };
 
 PixelHalves halves_of(const Film& film, const HalfEstimates& estimates, int x, int y) {
     const size_t at = estimates.offset(x, y);
-    return {V3d(film.half(x, y, 0).colour), V3d(film.half(x, y, 1).colour),
-            V3d(estimates.colour[0][at]), V3d(estimates.colour[1][at])};
+    PixelHalves out{V3d(film.half(x, y, 0).colour), V3d(film.half(x, y, 1).colour), {}, {}};
+    for (size_t e = 0; e < kEstimates; ++e) {
+        out.to_a[e] = V3d(estimates.colour[0][e][at]) - out.a;
+        out.to_b[e] = V3d(estimates.colour[1][e][at]) - out.b;
+    }
+    return out;
 }
 
-/// x: what of a pixel's squared error goes with the way to its estimate; y: the square of that way.
-/// Of their sums over many pixels the ratio is the part of the way that leaves the least error.
-using WayShares = Imath::V2d;
+/// What tells which parts of both ways leave the least squared error, as sums over pixels.
+struct WaySums {
+    V2d gain;                    ///< what of the error goes with each way
+    double first, both, second;  ///< products of the ways
 
-/// Part of the way. The ratio is noisy, and more than all of the way does not help: where the best
-/// is all of it, half of the ratios are less by chance. A fifth more makes up for most.
-double part_of(const WayShares& sums) {
+    explicit WaySums(double all) : gain(all), first(all), both(all), second(all) {}
+    void add(const WaySums& o, double weight) {
+        gain += o.gain * weight;
+        first += o.first * weight, both += o.both * weight, second += o.second * weight;
+    }
+};
+void add(V3d& sum, const V3d& to, double weight) {
+    sum += to * weight;
+}
+void add(WaySums& sum, const WaySums& to, double weight) {
+    sum.add(to, weight);
+}
+
+// The picture is M = (A + B) / 2, an estimate E = (D(A) + D(B)) / 2, the truth T. M + sum of
+// part (E - M) has the least squared error where, for each E, the sum of part (E - M) (E' - M) is
+// the mean of (M - T) (M - E'). The noise of the halves is independent and alike, so that is the
+// mean of (A - B) (A - B - D'(A) + D'(B)) / 4. It is shrinkage as of Stein (1956), towards
+// estimates that are noisy too.
+WaySums way_sums_of(const PixelHalves& p) {
+    WaySums out(0);
+    const V3d apart = p.a - p.b;
+    std::array<V3d, kEstimates> way;
+    for (size_t e = 0; e < kEstimates; ++e) {
+        way[e] = (p.to_a[e] + p.to_b[e]) / 2;
+        out.gain[static_cast<int>(e)] = apart.dot(p.to_b[e] - p.to_a[e]) / 4;
+    }
+    out.first = way[0].dot(way[0]), out.both = way[0].dot(way[1]), out.second = way[1].dot(way[1]);
+    return out;
+}
+
+// Parts of both ways: none is negative, and together they are 1 at most. The gain is noisy, and
+// more than all of a way does not help: where all of it is best, half of the parts are less by
+// chance. A fifth more makes up for most of that.
+V2d parts_of(const WaySums& s) {
     constexpr double kMore = 1.2;
-    return sums.y > 0 ? std::clamp(kMore * sums.x / sums.y, 0., 1.) : 1.;
-}
-
-// The picture is M = (A + B) / 2, its estimate E = (D(A) + D(B)) / 2, the truth T. M + part (E - M)
-// has the least squared error where part is the mean of (M - T) (M - E) over that of (M - E)^2. The
-// noise of the halves is independent and alike, so (A - B) (A - B - D(A) + D(B)) / 4 is on average
-// (M - T) (M - E). It is shrinkage as of Stein (1956), towards estimates that are noisy too.
-WayShares shares_of(const PixelHalves& p) {
-    const V3d apart = p.a - p.b, way = (p.a + p.b - p.of_a - p.of_b) / 2;
-    return {apart.dot(apart - (p.of_a - p.of_b)) / 4, way.dot(way)};
+    const V2d gain = kMore * s.gain;
+    const auto share = [](double of, double all) {
+        return all > 0 ? std::clamp(of / all, 0., 1.) : 1.;
+    };
+    const double determinant = s.first * s.second - s.both * s.both;
+    if (determinant > 1e-6 * s.first * s.second) {
+        const V2d inside =
+            V2d(gain.x * s.second - gain.y * s.both, gain.y * s.first - gain.x * s.both) /
+            determinant;
+        if (inside.x >= 0 && inside.y >= 0 && inside.x + inside.y <= 1) return inside;
+    }
+    const auto error = [&](const V2d& p) {
+        return s.first * p.x * p.x + 2 * s.both * p.x * p.y + s.second * p.y * p.y -
+               2 * gain.dot(p);
+    };
+    const double to_first =
+        share(gain.x - gain.y - s.both + s.second, s.first - 2 * s.both + s.second);
+    V2d best(share(gain.x, s.first), 0);
+    for (const V2d& edge : {V2d(0, share(gain.y, s.second)), V2d(to_first, 1 - to_first)})
+        if (error(edge) < error(best)) best = edge;
+    return best;
 }
 
 /// Sums of a rectangle of pixels, row by row; T(0) to begin with.
@@ -67,10 +115,10 @@ Pixels<T> sums_about(Pixels<T>& of, const Rect& where, const Weight& weight) {
     for (int y = from.y0; y < from.y1; ++y)
         for (int x = where.x0; x < where.x1; ++x)
             for (int u = std::max(x - kR, from.x0); u <= std::min(x + kR, from.x1 - 1); ++u)
-                rows(x, y) += of(u, y) * weight(u - x);
+                add(rows(x, y), of(u, y), weight(u - x));
     for (int y = where.y0; y < where.y1; ++y)
         for (int v = std::max(y - kR, from.y0); v <= std::min(y + kR, from.y1 - 1); ++v)
-            for (int x = where.x0; x < where.x1; ++x) out(x, y) += rows(x, v) * weight(v - y);
+            for (int x = where.x0; x < where.x1; ++x) add(out(x, y), rows(x, v), weight(v - y));
     return out;
 }
 
@@ -80,8 +128,8 @@ constexpr double tent(int distance_px) {
 
 }  // namespace
 
-// A pixel has a part in its own shares: by that its error would look too small. What goes to the
-// error is what the other pixels say, p, and the rest of the way by the other half's estimate.
+// A pixel has a share in its own sums: by that its error would look too small. What goes to the
+// error is what the other pixels say, and the rest of the way by the other half's estimate.
 void shrink_tile(const Film& film, const HalfEstimates& estimates, const Rect& tile,
                  Denoised& out) {
     const Rect near = grown(tile, kShrinkageRadius_px, estimates.pixels),
@@ -93,17 +141,17 @@ void shrink_tile(const Film& film, const HalfEstimates& estimates, const Rect& t
     Pixels<V3d> estimate(far);
     each(far, [&](int x, int y) {
         const size_t at = estimates.offset(x, y);
-        estimate(x, y) = V3d(estimates.colour[0][at]) + V3d(estimates.colour[1][at]);
+        estimate(x, y) = V3d(estimates.colour[0][0][at]) + V3d(estimates.colour[1][0][at]);
     });
     Pixels<V3d> brightness = sums_about(estimate, near, [](int) { return 1.; });
-    Pixels<WayShares> shares(near);
+    Pixels<WaySums> own(near);
     each(near, [&](int x, int y) {
         // Errors count as shares of the brightness about a pixel, but for a factor.
         const double square = brightness(x, y).length2();
         if (film.sample_count(x, y) >= kHalves && square > 0)
-            shares(x, y) = shares_of(halves_of(film, estimates, x, y)) * (1 / square);
+            own(x, y).add(way_sums_of(halves_of(film, estimates, x, y)), 1 / square);
     });
-    Pixels<WayShares> sums = sums_about(shares, tile, tent);
+    Pixels<WaySums> sums = sums_about(own, tile, tent);
     each(tile, [&](int x, int y) {
         V3f &colour = out.colour[out.offset(x, y)], &error = out.squared_error[out.offset(x, y)];
         if (film.sample_count(x, y) < kHalves) {  // one half knows nothing
@@ -113,17 +161,20 @@ void shrink_tile(const Film& film, const HalfEstimates& estimates, const Rect& t
             return;
         }
         const PixelHalves p = halves_of(film, estimates, x, y);
-        const double part = part_of(sums(x, y)), others = part_of(sums(x, y) - shares(x, y)),
-                     own = part - others;
-        for (int c = 0; c < 3; ++c) {
-            const double a = p.a[c], b = p.b[c], to_a = p.of_a[c] - a, to_b = p.of_b[c] - b,
-                         shown = (a + b + part * (to_a + to_b)) / 2;
-            colour[c] = static_cast<float>(shown);
-            // What is shown, times the truth: each half's part by what the other one knows.
-            const double times_truth = a * b + others * (to_a * b + to_b * a) / 2 +
-                                       own * (to_a * p.of_b[c] + to_b * p.of_a[c]) / 2;
-            error[c] = static_cast<float>(a * b - 2 * times_truth + shown * shown);
+        WaySums others = sums(x, y);
+        others.add(own(x, y), -1);
+        const V2d parts = parts_of(sums(x, y)), by_others = parts_of(others);
+        // What is shown, times the truth: each half by what the other one knows.
+        V3d shown = (p.a + p.b) / 2, times_truth = p.a * p.b;
+        for (size_t e = 0; e < kEstimates; ++e) {
+            const double part = parts[static_cast<int>(e)], other = by_others[static_cast<int>(e)];
+            const V3d &to_a = p.to_a[e], &to_b = p.to_b[e];
+            shown += part * (to_a + to_b) / 2;
+            times_truth += other * (to_a * p.b + to_b * p.a) / 2 +
+                           (part - other) * (to_a * (p.b + to_b) + to_b * (p.a + to_a)) / 2;
         }
+        colour = V3f(shown);
+        error = V3f(p.a * p.b - 2. * times_truth + shown * shown);
     });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a picture goes from what its samples show to what a regression makes of them: all the way
-// where noise is more than what the regression blurs, and less where it is less.
+// How far a picture goes from what its samples show to what regressions make of them: all the way
+// where noise is more than what a regression blurs, and less where it is less.
 #pragma once
 
 #include <array>
@@ -16,14 +16,18 @@ inline constexpr int kShrinkageRadius_px = 7;
 /// pixels about it.
 inline constexpr int kShrinkageReach_px = 2 * kShrinkageRadius_px;
 
+/// Estimates that are made of each pixel: one that keeps more detail, one that leaves less noise.
+inline constexpr size_t kEstimates = 2;
+
 /// Estimates of a picture's pixels from each half of their samples, row by row.
 struct HalfEstimates {
     Rect pixels;
-    std::array<std::vector<V3f>, kHalves> colour;  ///< nits
+    std::array<std::array<std::vector<V3f>, kEstimates>, kHalves> colour;  ///< nits
 
     explicit HalfEstimates(const Rect& of) : pixels(of) {
         for (auto& half : colour)
-            half.resize(static_cast<size_t>(of.width()) * static_cast<size_t>(of.height()));
+            for (auto& estimate : half)
+                estimate.resize(static_cast<size_t>(of.width()) * static_cast<size_t>(of.height()));
     }
     [[nodiscard]] size_t offset(int x, int y) const {
         return static_cast<size_t>(y - pixels.y0) * pixels.width() + (x - pixels.x0);
@@ -33,7 +37,8 @@ struct HalfEstimates {
 /// Denoised picture of a film's crop, row by row.
 struct Denoised {
     Rect crop;
-    std::vector<V3f> colour;  ///< nits: between the mean of both halves and that of their estimates
+    std::vector<V3f>
+        colour;  ///< nits: between the mean of both halves and the means of their estimates
     /// (colour - truth)^2 of R, G and B, nits^2, without bias: it may be negative, and says little
     /// of one pixel and much of a thousand.
     std::vector<V3f> squared_error;

@@ -135,8 +135,9 @@ Finding denoised_detail() {
         "of them is kept",
         number(halved));
     f.instead =
-        "Nothing: samples do not tell such detail. What is in a guide (albedo, normal, distance) "
-        "is kept. More samples, or the picture without denoising, show it.";
+        "Where denoising would blur more than the noise, the picture stays as it is. Below the "
+        "noise samples do not tell such detail. What is in a guide (albedo, normal, distance) is "
+        "kept. More samples, or the picture without denoising, show it.";
     return f;
 }
 

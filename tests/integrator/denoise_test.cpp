@@ -110,13 +110,17 @@ TEST(Denoiser, TexturesAreKept) {
     EXPECT_LT(errors.denoised, 0.5 * errors_of(unguided, denoised(unguided), blind).denoised);
 }
 
-// Fine stripes that no guide shows. Where their noise is less than what blurring them would cost,
-// the picture stays what it is; where it is more, the denoised one is better still.
+// Grains that no guide shows, at noise that is less or more than they are. With 48 samples the
+// first estimate alone has 1.07 times the error of the picture.
 TEST(Denoiser, DetailThatNoGuideShowsIsNoWorseThanWithout) {
-    for (const uint32_t samples : {16u, 64u, 1024u}) {
-        const Film film = film_of(kHidden, samples, 1, 9);
-        const Errors errors = errors_of(film, denoised(film), kHidden);
-        EXPECT_LT(errors.denoised, 1.01 * errors.noisy) << samples;
+    const NoisyPicture grains{[](int x, int y) {
+        return V3f(test::Random(static_cast<uint32_t>(y * kFrame.x + x)).next() < 0.5f ? 1.f
+                                                                                       : 1.4f);
+    }};
+    for (const uint32_t samples : {16u, 32u, 48u, 64u, 256u}) {
+        const Film film = film_of(grains, samples, 1, 9);
+        const Errors errors = errors_of(film, denoised(film), grains);
+        EXPECT_LT(errors.denoised, 0.97 * errors.noisy) << samples;
     }
 }
 

@@ -71,8 +71,6 @@ void check_samples(const SampleRequest& samples, bool bins) {
 }
 
 void check_denoise(const RenderRequest& request) {
-    if (request.scene.spectral.bins)
-        refuse("⟨denoise⟩", "excludes ⟨bins⟩: a film keeps no halves of spectra");
     if (request.samples.noise && request.crop)
         refuse("⟨crop⟩",
                "excludes ⟨noise⟩ with ⟨denoise⟩: the error is that of the full frame; leave out "

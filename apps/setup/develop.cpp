@@ -78,9 +78,13 @@ std::vector<std::string> channels_of(const Film& film, bool denoised) {
         for (const char* name : {"samples.N", "stderr.R", "stderr.G", "stderr.B"})
             if (std::find(names.begin(), names.end(), name) == names.end())
                 names.emplace_back(name);
-    if (denoised)
+    if (denoised) {
         for (const char* name : {"denoised.R", "denoised.G", "denoised.B", "denoised.error"})
             names.emplace_back(name);
+        for (int i = 0; film.spectral() && i < film.spectral()->bins().count; ++i)
+            names.push_back("denoised." +
+                            io::spectral_channel(film.spectral()->bins().centre_nm(i)));
+    }
     for (const Aov aov : film.aovs()) {
         const AovInfo& info = aov_info(aov);
         for (int i = 0; i < info.channel_count; ++i) names.emplace_back(info.channels[i]);
@@ -127,6 +131,10 @@ float* develop_pixel(const Film& film, const DenoisedFilm* denoised, uint32_t fi
         const size_t at = denoised->picture.offset(x, y);
         put(denoised->picture.colour[at], 3);
         *out++ = denoised->error_about[at];
+        if (film.spectral()) {
+            const auto bins = static_cast<size_t>(film.spectral()->bins().count);
+            out = std::copy_n(denoised->picture.bins.data() + at * bins, bins, out);
+        }
     }
     for (size_t layer = 0; layer < film.aovs().size(); ++layer)
         put(film.aov(x, y, layer), aov_info(film.aovs()[layer]).channel_count);

@@ -32,7 +32,7 @@ inline constexpr const char* kSamples = "petzval:samples";
 
 /// Picture of a film that has these samples: R, G, B, A in nits of the white point; with bins the
 /// channels S0 of io/image/spectral_layout.h, XYZ in nits and the standard errors of R, G and B;
-/// then the denoised picture and its error, where there is one, and the film's layers as
+/// then the denoised picture, its error and its bins, where there is one, and the film's layers as
 /// "layer.channel". Metadata: those of the render, with the samples and what bins mean; no times,
 /// so that equal renders are equal files. The film must outlive the rows.
 [[nodiscard]] io::PictureRows develop(const Film&, SampleRange, const io::Metadata&,

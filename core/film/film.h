@@ -93,6 +93,15 @@ class Film {
     [[nodiscard]] FilmHalves::Half half(int x, int y, uint32_t half) const {
         return halves_->half(offset(x, y), half);
     }
+    /// Number of samples of a half of a pixel of a film with halves.
+    [[nodiscard]] uint32_t half_count(int x, int y, uint32_t half) const {
+        return halves_->count(offset(x, y), half);
+    }
+    /// Bins of a half of a pixel of a film with halves and bins, spectral()->bins().count of them.
+    void half_bins(int x, int y, uint32_t half, float* out) const {
+        const size_t at = offset(x, y);
+        spectral_->half_bin_means(at, half, halves_->count(at, half), out);
+    }
     [[nodiscard]] const std::vector<Aov>& aovs() const { return aovs_; }
     /// Spectral sums: bins, XYZ and errors; nothing unless the film was made with bins.
     [[nodiscard]] const std::optional<SpectralFilm>& spectral() const { return spectral_; }

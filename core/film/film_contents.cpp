@@ -44,7 +44,7 @@ Film::Film(V2i full_size, Rect crop, std::vector<Aov> aovs, std::optional<Bins> 
       pixels_(static_cast<size_t>(kept_.width()) * kept_.height()),
       too_large_(pixels_.size()),
       aov_sums_(pixels_.size() * aovs_.size()) {
-    if (bins) spectral_.emplace(pixels_.size(), *bins);
+    if (bins) spectral_.emplace(pixels_.size(), *bins, keeps.halves);
     if (keeps.blocks) blocks_.emplace(pixels_.size());
     if (keeps.halves) halves_.emplace(pixels_.size());
 }
@@ -56,7 +56,7 @@ Rect Film::pixels_for(const Rect& crop, V2i full_size, FilmKeeps keeps) {
 
 size_t Film::bytes_per_pixel(size_t layers, const std::optional<Bins>& bins, FilmKeeps keeps) {
     return sizeof(Pixel) + sizeof(uint32_t) + layers * sizeof(std::array<FilmSum, 3>) +
-           (bins ? SpectralFilm::bytes_per_pixel(*bins) : 0) +
+           (bins ? SpectralFilm::bytes_per_pixel(*bins, keeps.halves) : 0) +
            (keeps.blocks ? FilmBlocks::bytes_per_pixel() : 0) +
            (keeps.halves ? FilmHalves::bytes_per_pixel() : 0);
 }
@@ -71,7 +71,7 @@ void Film::pack(int x, int y, uint8_t* to) const {
         to = petzval::pack(std::span<const FilmSum>(aov_sums_[at * layers + layer]), to);
     if (spectral_) {
         spectral_->pack(at, to);
-        to += SpectralFilm::bytes_per_pixel(spectral_->bins());
+        to += SpectralFilm::bytes_per_pixel(spectral_->bins(), halves_.has_value());
     }
     if (blocks_) {
         blocks_->pack(at, to);
@@ -100,7 +100,7 @@ void Film::add_packed(int x, int y, const uint8_t* from) {
         from = petzval::add_packed(std::span<FilmSum>(aov_sums_[at * layers + layer]), from);
     if (spectral_) {
         spectral_->add_packed(at, from);
-        from += SpectralFilm::bytes_per_pixel(spectral_->bins());
+        from += SpectralFilm::bytes_per_pixel(spectral_->bins(), halves_.has_value());
     }
     if (blocks_) {
         blocks_->add_packed(at, from);

@@ -70,6 +70,9 @@ class FilmHalves {
         std::array<float, kGuideNumbers> guide;
     };
     [[nodiscard]] Half half(size_t pixel, uint32_t half) const;
+    [[nodiscard]] uint32_t count(size_t pixel, uint32_t half) const {
+        return pixels_[pixel].count[half];
+    }
 
     void pack(size_t pixel, uint8_t* to) const { std::memcpy(to, &pixels_[pixel], sizeof(Pixel)); }
     /// Adds what pack() wrote.

@@ -7,9 +7,10 @@
 
 namespace petzval {
 
-SpectralFilm::SpectralFilm(size_t pixels, const Bins& bins)
+SpectralFilm::SpectralFilm(size_t pixels, const Bins& bins, bool halves)
     : bins_(bins),
-      bin_sums_(pixels * static_cast<size_t>(bins.count)),
+      each_(sums_per_pixel(bins, halves)),
+      bin_sums_(pixels * each_),
       xyz_sums_(pixels),
       replicate_sums_(pixels) {}
 
@@ -35,7 +36,10 @@ bool SpectralFilm::holds(const Sample& sample, const Bands& bands) const {
 }
 
 void SpectralFilm::add(size_t pixel, Rgb colour, const Sample& sample, const Bands& bands) {
-    SpectralSum* bins = bin_sums_.data() + pixel * static_cast<size_t>(bins_.count);
+    static_assert(kReplicates % kHalves == 0, "a replicate belongs to one half");
+    const auto one = static_cast<size_t>(bins_.count);
+    SpectralSum* bins =
+        bin_sums_.data() + pixel * each_ + (each_ > one ? half_of(sample.replicate) * one : 0);
     const f4 values = bin_values(sample.radiance, bands);
     for (int i = 0; i < 4; ++i) {
         const int bin = bands.on[i] ? bins_.index(bands.nm[i]) : -1;
@@ -49,8 +53,19 @@ void SpectralFilm::add(size_t pixel, Rgb colour, const Sample& sample, const Ban
 }
 
 void SpectralFilm::bin_means(size_t pixel, uint32_t count, float* out) const {
-    const SpectralSum* bins = bin_sums_.data() + pixel * static_cast<size_t>(bins_.count);
-    for (int i = 0; i < bins_.count; ++i)
+    const auto one = static_cast<size_t>(bins_.count);
+    const SpectralSum* bins = bin_sums_.data() + pixel * each_;
+    for (size_t i = 0; i < one; ++i) {
+        SpectralSum sum = bins[i];
+        if (each_ > one) sum += bins[one + i];
+        out[i] = count > 0 ? static_cast<float>(sum.value() / count) : 0.f;
+    }
+}
+
+void SpectralFilm::half_bin_means(size_t pixel, uint32_t half, uint32_t count, float* out) const {
+    const auto one = static_cast<size_t>(bins_.count);
+    const SpectralSum* bins = bin_sums_.data() + pixel * each_ + half * one;
+    for (size_t i = 0; i < one; ++i)
         out[i] = count > 0 ? static_cast<float>(bins[i].value() / count) : 0.f;
 }
 
@@ -96,16 +111,14 @@ float SpectralFilm::luminance_error(size_t pixel, SampleRange range) const {
 }
 
 void SpectralFilm::pack(size_t pixel, uint8_t* to) const {
-    const auto count = static_cast<size_t>(bins_.count);
-    to = petzval::pack(std::span(bin_sums_).subspan(pixel * count, count), to);
+    to = petzval::pack(std::span(bin_sums_).subspan(pixel * each_, each_), to);
     to = petzval::pack(std::span<const FilmSum>(xyz_sums_[pixel]), to);
     for (const Tristimulus& replicate : replicate_sums_[pixel])
         to = petzval::pack(std::span<const FilmSum>(replicate), to);
 }
 
 void SpectralFilm::add_packed(size_t pixel, const uint8_t* from) {
-    const auto count = static_cast<size_t>(bins_.count);
-    from = petzval::add_packed(std::span(bin_sums_).subspan(pixel * count, count), from);
+    from = petzval::add_packed(std::span(bin_sums_).subspan(pixel * each_, each_), from);
     from = petzval::add_packed(std::span<FilmSum>(xyz_sums_[pixel]), from);
     for (Tristimulus& replicate : replicate_sums_[pixel])
         from = petzval::add_packed(std::span<FilmSum>(replicate), from);

@@ -3,6 +3,7 @@
 
 #include <immintrin.h>
 
+#include <span>
 #include <vector>
 
 #include "integrator/denoise/half_tile.h"
@@ -123,9 +124,10 @@ class Regression {
         add_up();
         solve();
     }
-    /// Estimates of R, G and B. Shares below 0 are left out: no estimate lies beyond the window's
-    /// values, none is negative.
-    [[nodiscard]] std::array<f8, 3> colour() const;
+    /// Writes the estimates of planes, such as R, G and B, each a sum of the window's values by the
+    /// same shares. Shares below 0 are left out: no estimate lies beyond the window's values, none
+    /// is negative.
+    void estimate(std::span<const HalfTile::Plane> planes, f8* out) const;
 
   private:
     // Calls use(weight, regressors, index) for the pixels of the window that have a weight.
@@ -196,34 +198,41 @@ void Regression::solve() {
     }
 }
 
-std::array<f8, 3> Regression::colour() const {
+void Regression::estimate(std::span<const HalfTile::Plane> planes, f8* out) const {
     f8 all = splat8(0);
-    std::array<f8, 3> sum{};
+    for (size_t i = 0; i < planes.size(); ++i) out[i] = splat8(0);
     each_pixel([&](f8 weight, const Regressors& at, size_t q) {
         f8 share = splat8(0);
         for (size_t a = 0; a < kRegressors; ++a) share += shares_[a] * at[a];
         share = weight * max(share, splat8(0));
         all += share;
-        for (size_t c = 0; c < 3; ++c) sum[c] += share * load8(&half_.colour[c][q]);
+        for (size_t i = 0; i < planes.size(); ++i) out[i] += share * load8(&planes[i][q]);
     });
     // A pixel always has a weight for itself; beyond the frame there is none.
-    for (f8& c : sum) c /= max(all, splat8(1e-30f));
-    return sum;
+    for (size_t i = 0; i < planes.size(); ++i) out[i] /= max(all, splat8(1e-30f));
 }
 
 }  // namespace
 
 void estimate_tile(const Film& film, const Rect& tile, HalfEstimates& out) {
+    std::vector<f8> bins(out.bins_each);
     for (uint32_t number = 0; number < kHalves; ++number) {
         const auto half = std::make_unique<HalfTile>(film, V2i(tile.x0, tile.y0), number);
         const WindowWeights weights(*half);
-        for (size_t estimate = 0; estimate < kEstimates; ++estimate)
+        for (size_t e = 0; e < kEstimates; ++e)
             for (int y = 0; y < tile.height(); ++y)
                 for (int x = 0; x < tile.width(); x += 8) {
-                    const auto colour = Regression(*half, weights, estimate == 1, x, y).colour();
-                    for (int lane = 0; lane < std::min(8, tile.width() - x); ++lane)
-                        out.colour[number][estimate][out.offset(tile.x0 + x + lane, tile.y0 + y)] =
-                            {colour[0][lane], colour[1][lane], colour[2][lane]};
+                    const Regression regression(*half, weights, e == 1, x, y);
+                    std::array<f8, 3> colour;
+                    regression.estimate(half->colour, colour.data());
+                    if (!bins.empty()) regression.estimate(half->bins, bins.data());
+                    for (int lane = 0; lane < std::min(8, tile.width() - x); ++lane) {
+                        const size_t at = out.offset(tile.x0 + x + lane, tile.y0 + y);
+                        out.colour[number][e][at] = {colour[0][lane], colour[1][lane],
+                                                     colour[2][lane]};
+                        for (size_t b = 0; b < bins.size(); ++b)
+                            out.bins[e][at * bins.size() + b] += bins[b][lane] / kHalves;
+                    }
                 }
     }
 }

@@ -42,6 +42,9 @@ void HalfTile::read(const Film& film, V2i tile, uint32_t half) {
     for (Plane& plane : colour) plane = {};
     for (Plane& plane : variance) plane = {};
     for (Plane& plane : guide) plane = {};
+    std::vector<float> of_pixel(film.spectral() ? static_cast<size_t>(film.spectral()->bins().count)
+                                                : 0);
+    bins.assign(of_pixel.size(), {});
     for (int y = 0; y < HalfTile::kSide; ++y)
         for (int x = 0; x < HalfTile::kSide; ++x) {
             const int film_x = tile.x + x - kReach, film_y = tile.y + y - kReach;
@@ -55,6 +58,9 @@ void HalfTile::read(const Film& film, V2i tile, uint32_t half) {
                 variance[c][i] = from.variance[static_cast<int>(c)];
             }
             for (size_t g = 0; g < kGuideNumbers; ++g) guide[g][i] = from.guide[g];
+            if (of_pixel.empty()) continue;
+            film.half_bins(film_x, film_y, half, of_pixel.data());
+            for (size_t b = 0; b < bins.size(); ++b) bins[b][i] = of_pixel[b];
         }
 }
 
@@ -84,6 +90,8 @@ void HalfTile::dim_lonely_pixels() {
             colour[c][i] *= factor[i];
             variance[c][i] *= factor[i] * factor[i];
         }
+    for (Plane& plane : bins)
+        for (size_t i = 0; i < factor.size(); ++i) plane[i] *= factor[i];
 }
 
 // A pixel that no bright sample met does not know its variance: it takes that of pixels about it

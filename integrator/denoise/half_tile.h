@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "core/film/film.h"
 #include "core/math/lanes.h"
@@ -34,7 +35,8 @@ struct HalfTile {
     std::array<Plane, 3> colour;    ///< without lonely bright pixels
     std::array<Plane, 3> variance;  ///< of colour
     std::array<Plane, kGuideNumbers> guide;
-    Plane inside;  ///< 1, and 0 beyond the frame
+    std::vector<Plane> bins;  ///< of a film with bins: dimmed as colour is
+    Plane inside;             ///< 1, and 0 beyond the frame
 
     /// Index of a pixel by its place in the tile.
     [[nodiscard]] static constexpr int index(int x, int y) {

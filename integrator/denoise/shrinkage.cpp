@@ -9,20 +9,25 @@ namespace {
 
 using Imath::V2d, Imath::V3d;
 
-/// Two halves of a pixel, and the ways from them to what is estimated of each.
+/// Two halves of a pixel, and what is estimated of each.
 struct PixelHalves {
     V3d a, b;
-    std::array<V3d, kEstimates> to_a, to_b;
+    std::array<V3d, kEstimates> of_a, of_b;
 };
 
 PixelHalves halves_of(const Film& film, const HalfEstimates& estimates, int x, int y) {
     const size_t at = estimates.offset(x, y);
     PixelHalves out{V3d(film.half(x, y, 0).colour), V3d(film.half(x, y, 1).colour), {}, {}};
     for (size_t e = 0; e < kEstimates; ++e) {
-        out.to_a[e] = V3d(estimates.colour[0][e][at]) - out.a;
-        out.to_b[e] = V3d(estimates.colour[1][e][at]) - out.b;
+        out.of_a[e] = V3d(estimates.colour[0][e][at]);
+        out.of_b[e] = V3d(estimates.colour[1][e][at]);
     }
     return out;
+}
+
+/// Whether both halves of a pixel have samples: one alone knows nothing of its error.
+bool has_both(const Film& film, int x, int y) {
+    return film.half_count(x, y, 0) > 0 && film.half_count(x, y, 1) > 0;
 }
 
 /// What tells which parts of both ways leave the least squared error, as sums over pixels.
@@ -53,8 +58,8 @@ WaySums way_sums_of(const PixelHalves& p) {
     const V3d apart = p.a - p.b;
     std::array<V3d, kEstimates> way;
     for (size_t e = 0; e < kEstimates; ++e) {
-        way[e] = (p.to_a[e] + p.to_b[e]) / 2;
-        out.gain[static_cast<int>(e)] = apart.dot(p.to_b[e] - p.to_a[e]) / 4;
+        way[e] = (p.of_a[e] - p.a + p.of_b[e] - p.b) / 2;
+        out.gain[static_cast<int>(e)] = apart.dot(apart - (p.of_a[e] - p.of_b[e])) / 4;
     }
     out.first = way[0].dot(way[0]), out.both = way[0].dot(way[1]), out.second = way[1].dot(way[1]);
     return out;
@@ -126,55 +131,92 @@ constexpr double tent(int distance_px) {
     return 1 - double(distance_px < 0 ? -distance_px : distance_px) / (kShrinkageRadius_px + 1);
 }
 
-}  // namespace
+/// Shares that what a pixel shows has of its samples and of both estimates.
+struct ShownShares {
+    explicit ShownShares(const V2d& parts)
+        : samples(std::max(0., 1 - parts.x - parts.y)), estimates{parts.x, parts.y} {}
+    double samples;
+    std::array<double, kEstimates> estimates;
+};
+
+// Bins take the shares of the colour, so that they are of the same light.
+void shrink_bins(const Film& film, const HalfEstimates& estimates, const ShownShares& shares, int x,
+                 int y, float* out) {
+    std::array<std::vector<float>, kHalves> half;
+    for (uint32_t h = 0; h < kHalves; ++h) {
+        half[h].resize(estimates.bins_each);
+        film.half_bins(x, y, h, half[h].data());
+    }
+    const size_t at = estimates.offset(x, y) * estimates.bins_each;
+    for (size_t b = 0; b < estimates.bins_each; ++b) {
+        double sum = shares.samples * (double(half[0][b]) + double(half[1][b])) / 2;
+        for (size_t e = 0; e < kEstimates; ++e)
+            sum += shares.estimates[e] * double(estimates.bins[e][at + b]);
+        out[b] = static_cast<float>(sum);
+    }
+}
 
 // A pixel has a share in its own sums: by that its error would look too small. What goes to the
 // error is what the other pixels say, and the rest of the way by the other half's estimate.
+V3d squared_error_of(const PixelHalves& p, const V3d& shown, const V2d& parts,
+                     const V2d& by_others) {
+    V3d times_truth = p.a * p.b;  // what is shown, times the truth: each half by the other one
+    for (size_t e = 0; e < kEstimates; ++e) {
+        const double other = by_others[static_cast<int>(e)],
+                     rest = parts[static_cast<int>(e)] - other;
+        const V3d to_a = p.of_a[e] - p.a, to_b = p.of_b[e] - p.b;
+        times_truth += other * (to_a * p.b + to_b * p.a) / 2 +
+                       rest * (to_a * p.of_b[e] + to_b * p.of_a[e]) / 2;
+    }
+    return p.a * p.b - 2. * times_truth + shown * shown;
+}
+
+}  // namespace
+
 void shrink_tile(const Film& film, const HalfEstimates& estimates, const Rect& tile,
                  Denoised& out) {
-    const Rect near = grown(tile, kShrinkageRadius_px, estimates.pixels),
-               far = grown(near, kShrinkageRadius_px, estimates.pixels);
+    const Rect around = grown(tile, kShrinkageRadius_px, estimates.pixels),
+               further = grown(around, kShrinkageRadius_px, estimates.pixels);
     const auto each = [](const Rect& r, const auto& use) {
         for (int y = r.y0; y < r.y1; ++y)
             for (int x = r.x0; x < r.x1; ++x) use(x, y);
     };
-    Pixels<V3d> estimate(far);
-    each(far, [&](int x, int y) {
+    Pixels<V3d> estimate(further);
+    each(further, [&](int x, int y) {
         const size_t at = estimates.offset(x, y);
         estimate(x, y) = V3d(estimates.colour[0][0][at]) + V3d(estimates.colour[1][0][at]);
     });
-    Pixels<V3d> brightness = sums_about(estimate, near, [](int) { return 1.; });
-    Pixels<WaySums> own(near);
-    each(near, [&](int x, int y) {
+    Pixels<V3d> brightness = sums_about(estimate, around, [](int) { return 1.; });
+    Pixels<WaySums> own(around);
+    each(around, [&](int x, int y) {
         // Errors count as shares of the brightness about a pixel, but for a factor.
         const double square = brightness(x, y).length2();
-        if (film.sample_count(x, y) >= kHalves && square > 0)
+        if (has_both(film, x, y) && square > 0)
             own(x, y).add(way_sums_of(halves_of(film, estimates, x, y)), 1 / square);
     });
     Pixels<WaySums> sums = sums_about(own, tile, tent);
     each(tile, [&](int x, int y) {
-        V3f &colour = out.colour[out.offset(x, y)], &error = out.squared_error[out.offset(x, y)];
-        if (film.sample_count(x, y) < kHalves) {  // one half knows nothing
+        const size_t at = out.offset(x, y);
+        float* bins = out.bins.data() + at * estimates.bins_each;
+        if (!has_both(film, x, y)) {
             const V4f all = film.colour(x, y);
-            colour = {all.x, all.y, all.z};
-            error = colour * colour;
+            out.colour[at] = {all.x, all.y, all.z};
+            out.squared_error[at] = out.colour[at] * out.colour[at];
+            if (film.spectral())
+                film.spectral()->bin_means(film.offset(x, y), film.sample_count(x, y), bins);
             return;
         }
         const PixelHalves p = halves_of(film, estimates, x, y);
         WaySums others = sums(x, y);
         others.add(own(x, y), -1);
-        const V2d parts = parts_of(sums(x, y)), by_others = parts_of(others);
-        // What is shown, times the truth: each half by what the other one knows.
-        V3d shown = (p.a + p.b) / 2, times_truth = p.a * p.b;
-        for (size_t e = 0; e < kEstimates; ++e) {
-            const double part = parts[static_cast<int>(e)], other = by_others[static_cast<int>(e)];
-            const V3d &to_a = p.to_a[e], &to_b = p.to_b[e];
-            shown += part * (to_a + to_b) / 2;
-            times_truth += other * (to_a * p.b + to_b * p.a) / 2 +
-                           (part - other) * (to_a * (p.b + to_b) + to_b * (p.a + to_a)) / 2;
-        }
-        colour = V3f(shown);
-        error = V3f(p.a * p.b - 2. * times_truth + shown * shown);
+        const V2d parts = parts_of(sums(x, y));
+        const ShownShares shares(parts);
+        V3d shown = shares.samples * (p.a + p.b) / 2;
+        for (size_t e = 0; e < kEstimates; ++e)
+            shown += shares.estimates[e] * (p.of_a[e] + p.of_b[e]) / 2;
+        out.colour[at] = V3f(shown);
+        out.squared_error[at] = V3f(squared_error_of(p, shown, parts, parts_of(others)));
+        if (film.spectral()) shrink_bins(film, estimates, shares, x, y, bins);
     });
 }
 

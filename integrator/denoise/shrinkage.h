@@ -23,11 +23,18 @@ inline constexpr size_t kEstimates = 2;
 struct HalfEstimates {
     Rect pixels;
     std::array<std::array<std::vector<V3f>, kEstimates>, kHalves> colour;  ///< nits
+    size_t bins_each;  ///< bins of a pixel; none of a film without
+    /// Means of both halves, W/(m2 sr nm), pixel-major.
+    std::array<std::vector<float>, kEstimates> bins;
 
-    explicit HalfEstimates(const Rect& of) : pixels(of) {
+    /// Black estimates of these pixels of a film.
+    HalfEstimates(const Film& film, const Rect& of)
+        : pixels(of),
+          bins_each(film.spectral() ? static_cast<size_t>(film.spectral()->bins().count) : 0) {
+        const auto count = static_cast<size_t>(of.width()) * static_cast<size_t>(of.height());
         for (auto& half : colour)
-            for (auto& estimate : half)
-                estimate.resize(static_cast<size_t>(of.width()) * static_cast<size_t>(of.height()));
+            for (auto& estimate : half) estimate.resize(count, V3f(0));
+        for (auto& estimate : bins) estimate.resize(count * bins_each);
     }
     [[nodiscard]] size_t offset(int x, int y) const {
         return static_cast<size_t>(y - pixels.y0) * pixels.width() + (x - pixels.x0);
@@ -37,11 +44,13 @@ struct HalfEstimates {
 /// Denoised picture of a film's crop, row by row.
 struct Denoised {
     Rect crop;
-    std::vector<V3f>
-        colour;  ///< nits: between the mean of both halves and the means of their estimates
+    /// Nits: between the mean of both halves and the means of their estimates.
+    std::vector<V3f> colour;
     /// (colour - truth)^2 of R, G and B, nits^2, without bias: it may be negative, and says little
     /// of one pixel and much of a thousand.
     std::vector<V3f> squared_error;
+    /// Of a film with bins, by the same weights as colour: W/(m2 sr nm), pixel-major.
+    std::vector<float> bins;
 
     [[nodiscard]] size_t offset(int x, int y) const {
         return static_cast<size_t>(y - crop.y0) * crop.width() + (x - crop.x0);

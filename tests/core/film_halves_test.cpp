@@ -90,11 +90,41 @@ TEST(FilmHalves, CountsThatAreForgedAreSeen) {
     EXPECT_EQ(count(), 5u);
 }
 
+// Of a film with bins both halves of each bin are kept apart; together they are the bin.
+TEST(FilmHalves, HaveTheirBins) {
+    constexpr Bins kBins{400, 100, 3};
+    Film film({1, 1}, {0, 0, 1, 1}, {}, kBins, kHalved), other = film;
+    Film plain({1, 1}, {0, 0, 1, 1}, {}, kBins);
+    Bands bands;
+    bands.nm = f4{450, 550, 650, 750};
+    bands.pdf = f4{0.0025f, 0.0025f, 0.0025f, 0.0025f};  // times 4 lanes and 100 nm: 1
+    bands.on = m4{-1, -1, -1, -1};
+    bands.spectral = true;
+    for (uint32_t i = 0; i < 9; ++i) {
+        const SpectralFilm::Sample light{i % kReplicates, f4{1, 2, 4, 8} * float(i), V3f(1)};
+        for (Film* to : {&film, &plain}) to->add(0, 0, i, sample_of(Rgb(1.f)), light, bands);
+    }
+    std::vector<uint8_t> packed(Film::bytes_per_pixel(0, kBins, kHalved));
+    film.pack(0, 0, packed.data());
+    EXPECT_EQ(Film::packed_count(packed.data(), {}, kBins, kHalved, {0, 9}), 9u);
+    other.add_packed(0, 0, packed.data());
+    for (const Film* of : {&film, &other}) {
+        std::array<float, 3> even, odd, all, without;
+        of->half_bins(0, 0, 0, even.data());
+        of->half_bins(0, 0, 1, odd.data());
+        of->spectral()->bin_means(0, 9, all.data());
+        plain.spectral()->bin_means(0, 9, without.data());
+        EXPECT_FLOAT_EQ(even[0], 4);  // of 0, 2, 4, 6 and 8
+        EXPECT_FLOAT_EQ(odd[2], 4 * 4);
+        EXPECT_EQ(all, without);
+    }
+}
+
 // A part of a frame keeps what a denoiser sees around it.
 TEST(FilmHalves, AFilmKeepsPixelsAroundItsCrop) {
     const Film film({100, 50}, {40, 2, 50, 10}, {}, {}, kHalved);
     EXPECT_EQ(film.crop(), (Rect{40, 2, 50, 10}));
-    EXPECT_EQ(film.pixels(), (Rect{28, 0, 62, 22}));
+    EXPECT_EQ(film.pixels(), (Rect{14, 0, 76, 36}));
     EXPECT_EQ(Film({100, 50}, {40, 2, 50, 10}, {}).pixels(), (Rect{40, 2, 50, 10}));
 }
 

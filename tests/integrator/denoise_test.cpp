@@ -234,6 +234,41 @@ TEST(Denoiser, CropsAndThreadsHaveTheSameBytes) {
     }
 }
 
+// Each bin is a multiple of the colour, in every sample. So is the denoised one, also where a
+// firefly in the dark is taken away.
+TEST(Denoiser, BinsHaveTheSharesOfTheColour) {
+    constexpr Bins kBins{400, 100, 3};
+    Film film(kFrame, kWhole, {}, kBins, {.halves = true});
+    Bands bands;
+    bands.nm = f4{450, 550, 650, 750};  // the last one is in no bin
+    bands.pdf = f4{0.01f, 0.01f, 0.01f, 0.01f};
+    bands.on = m4{-1, -1, -1, -1};
+    bands.spectral = true;
+    for (int y = 0; y < kFrame.y; ++y)
+        for (int x = 0; x < kFrame.x; ++x) {
+            test::Random random(static_cast<uint32_t>(y * kFrame.x + x));
+            for (uint32_t i = 0; i < 16; ++i) {
+                const float light = x < 40 ? 0 : wave(x, y) * 2 * random.next(),
+                            nits = x == 20 && y == 40 && i == 3 ? 1e5f : light;
+                FilmSample sample;
+                sample.colour = Rgb(nits);
+                film.add(x, y, i, sample, {i % kReplicates, f4{1, 2, 3, 4} * nits, V3f(nits)},
+                         bands);
+            }
+        }
+    const Denoised picture = denoised(film);
+    ASSERT_EQ(picture.bins.size(), 3 * picture.colour.size());
+    for (size_t at = 0; at < picture.colour.size(); ++at) {
+        const float nits = picture.colour[at].x;
+        ASSERT_GE(nits, 0);
+        for (size_t b = 0; b < 3; ++b) {
+            const float expected = nits * static_cast<float>(b + 1) / 4;  // over 0.01 x 4 x 100 nm
+            ASSERT_GE(picture.bins[3 * at + b], 0);
+            ASSERT_NEAR(picture.bins[3 * at + b], expected, 1e-5f * expected) << at;
+        }
+    }
+}
+
 TEST(Denoiser, AStopLeavesNothing) {
     ThreadExecutor executor(2);
     const std::atomic<bool> stop = true;

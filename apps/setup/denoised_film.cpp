@@ -113,21 +113,24 @@ std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film,
     for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x) {
             const size_t at = out->picture.offset(x, y);
-            const V3f error = out->picture.squared_error[at];
+            const V3f error = out->picture.squared_error[at], doubt = out->picture.doubt[at];
+            const bool has_both = film.half_count(x, y, 0) > 0 && film.half_count(x, y, 1) > 0;
             const auto a = film.half(x, y, 0), b = film.half(x, y, 1);
             const V3f apart = a.colour - b.colour;
             const Imath::V3d bright = surroundings.mean(x - crop.x0, y - crop.y0);
-            double squares = 0, noise = 0, variance = 0;
+            double squares = 0, noise = 0, variance = 0, doubted = 0;
             for (int c = 0; c < 3; ++c) {
                 const double scale =
                     3 * (bright[c] * bright[c] + out->floor_nits * out->floor_nits);
                 if (!(scale > 0)) continue;
                 squares += double(error[c]) / scale;
-                noise += double(apart[c]) * double(apart[c]) / (4 * scale);
+                noise += has_both ? double(apart[c]) * double(apart[c]) / (4 * scale)
+                                  : double(error[c]) / scale;
+                doubted += double(doubt[c]) / scale;
                 variance += (double(a.variance[c]) + double(b.variance[c])) / (2 * scale);
             }
-            denoised.add(x - crop.x0, y - crop.y0, squares, variance);
-            noisy.add(x - crop.x0, y - crop.y0, noise, 0);
+            denoised.add(x - crop.x0, y - crop.y0, squares, variance, doubted);
+            noisy.add(x - crop.x0, y - crop.y0, noise, 0, 0);
         }
     const Rect all{0, 0, denoised.across(), denoised.down()};
     out->error = denoised.over(all);

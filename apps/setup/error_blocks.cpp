@@ -26,13 +26,15 @@ ErrorBlocks::ErrorBlocks(int width_px, int height_px)
       sum_(static_cast<size_t>(across_) * static_cast<size_t>(down_)),
       count_(sum_.size()),
       variance_(sum_.size()),
-      variance_squares_(sum_.size()) {}
+      variance_squares_(sum_.size()),
+      doubt_(sum_.size()) {}
 
-void ErrorBlocks::add(int x, int y, double squared_error, double variance) {
+void ErrorBlocks::add(int x, int y, double squared_error, double variance, double doubt) {
     const auto at = static_cast<size_t>(y / kErrorBlock_px * across_ + x / kErrorBlock_px);
     sum_[at] += squared_error;
     variance_[at] += variance;
     variance_squares_[at] += variance * variance;
+    doubt_[at] += doubt;
     count_[at] += 1;
 }
 
@@ -54,9 +56,11 @@ DenoisedError ErrorBlocks::over(const Rect& r) const {
     each([&](double s, double n) { all += s, pixels += n; });
     const double mean = all / pixels;
     double chance = 0;  // the product of two halves' noise, in a block
+    double doubt = 0;
     for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x) {
             const auto at = static_cast<size_t>(y * across_ + x);
+            doubt += std::abs(doubt_[at]) / kDeviations;
             if (!(variance_[at] > 0)) continue;
             // Pixels that have the noise, by how even it is (Kish 1965); but no less than 4 x 4.
             constexpr double kLeastShare = 0.25;
@@ -68,11 +72,11 @@ DenoisedError ErrorBlocks::over(const Rect& r) const {
         squares += (s - n * mean) * (s - n * mean);
         groups += 1;
     });
-    if (groups < 2) return {mean, std::sqrt(std::max(all * all, chance)) / pixels};
+    if (groups < 2) return {mean, (std::sqrt(std::max(all * all, chance)) + doubt) / pixels};
     const double parted = squares * groups / (groups - 1);
     // Wider, as the deviation is known from few numbers.
     const double widening = student_t_975(groups - 1) / kDeviations;
-    return {mean, widening * std::sqrt(std::max(parted, chance)) / pixels};
+    return {mean, (widening * std::sqrt(std::max(parted, chance)) + doubt) / pixels};
 }
 
 }  // namespace petzval::apps

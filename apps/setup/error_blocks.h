@@ -38,16 +38,17 @@ class ErrorBlocks {
 
     [[nodiscard]] int across() const { return across_; }
     [[nodiscard]] int down() const { return down_; }
-    /// Adds the squared error of a pixel, and the variance of half of its samples in the same
-    /// units.
-    void add(int x, int y, double squared_error, double variance);
+    /// Adds the squared error of a pixel, the variance of half of its samples in the same units,
+    /// and what of the squared error is in doubt.
+    void add(int x, int y, double squared_error, double variance, double doubt);
     /// Error over a rectangle of blocks. Its deviation follows from how the blocks part, or is what
-    /// it is where noise that is in single pixels is as likely in others about them.
+    /// it is where noise that is in single pixels is as likely in others about them. What is in
+    /// doubt moves the bounds by as much.
     [[nodiscard]] DenoisedError over(const Rect& blocks) const;
 
   private:
     int across_ = 0, down_ = 0;
-    std::vector<double> sum_, count_, variance_, variance_squares_;  ///< by block, row by row
+    std::vector<double> sum_, count_, variance_, variance_squares_, doubt_;  ///< row by row
 };
 
 }  // namespace petzval::apps

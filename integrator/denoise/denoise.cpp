@@ -128,6 +128,8 @@ class Regression {
     /// same shares. Shares below 0 are left out: no estimate lies beyond the window's values, none
     /// is negative.
     void estimate(std::span<const HalfTile::Plane> planes, f8* out) const;
+    /// Standard errors of the estimates of R, G and B, as far as the variances tell: their sum.
+    [[nodiscard]] f8 deviation() const;
 
   private:
     // Calls use(weight, regressors, index) for the pixels of the window that have a weight.
@@ -138,8 +140,8 @@ class Regression {
             for (int dx = -kWindow_px; dx <= kWindow_px; ++dx, ++n) {
                 f8 weight = weights_.of(n, x_, y_);
                 if (is_smoother_) weight = sqrt(sqrt(weight));  // e^-a/4: four times k^2
-                constexpr float kLeast = 1e-4f;
-                const m8 counts = weight > kLeast;
+                // A ten-thousandth of a lamp would be seen in the dark beside it.
+                const m8 counts = weight > (is_smoother_ ? 0.05f : 1e-4f);
                 if (_mm256_movemask_ps((__m256)counts) == 0) continue;
                 const auto q = static_cast<size_t>(centre_ + dy * kSide + dx);
                 Regressors at;
@@ -151,6 +153,9 @@ class Regression {
                 use(counts ? weight : splat8(0), at, q);
             }
     }
+    /// Calls use(share, index) for the pixels of the window. Returns the sum of the shares.
+    template <class Use>
+    f8 each_share(const Use& use) const;
     void add_up();
     void solve();
 
@@ -198,42 +203,93 @@ void Regression::solve() {
     }
 }
 
-void Regression::estimate(std::span<const HalfTile::Plane> planes, f8* out) const {
+template <class Use>
+f8 Regression::each_share(const Use& use) const {
     f8 all = splat8(0);
-    for (size_t i = 0; i < planes.size(); ++i) out[i] = splat8(0);
     each_pixel([&](f8 weight, const Regressors& at, size_t q) {
         f8 share = splat8(0);
         for (size_t a = 0; a < kRegressors; ++a) share += shares_[a] * at[a];
         share = weight * max(share, splat8(0));
         all += share;
-        for (size_t i = 0; i < planes.size(); ++i) out[i] += share * load8(&planes[i][q]);
+        use(share, q);
     });
     // A pixel always has a weight for itself; beyond the frame there is none.
-    for (size_t i = 0; i < planes.size(); ++i) out[i] /= max(all, splat8(1e-30f));
+    return max(all, splat8(1e-30f));
 }
+
+void Regression::estimate(std::span<const HalfTile::Plane> planes, f8* out) const {
+    for (size_t i = 0; i < planes.size(); ++i) out[i] = splat8(0);
+    const f8 all = each_share([&](f8 share, size_t q) {
+        for (size_t i = 0; i < planes.size(); ++i) out[i] += share * load8(&planes[i][q]);
+    });
+    for (size_t i = 0; i < planes.size(); ++i) out[i] /= all;
+}
+
+f8 Regression::deviation() const {
+    std::array<f8, 3> variance{};
+    const f8 all = each_share([&](f8 share, size_t q) {
+        for (size_t c = 0; c < 3; ++c) variance[c] += share * share * load8(&half_.variance[c][q]);
+    });
+    return (sqrt(variance[0]) + sqrt(variance[1]) + sqrt(variance[2])) / all;
+}
+
+// The smoother estimate takes noisy lamps for what the dark beside them may be, too. So it goes no
+// further from the first one than three deviations of that: in the dark these are 0.
+f8 way_to_smoother(const Regression& first, const std::array<f8, 3>& from,
+                   const std::array<f8, 3>& to) {
+    constexpr float kDeviations = 3;
+    f8 way = splat8(1e-30f);
+    for (size_t c = 0; c < 3; ++c) way += max(to[c] - from[c], from[c] - to[c]);
+    return min(splat8(1), kDeviations * first.deviation() / way);
+}
+
+/// Writes the estimates of eight pixels, as far as they lie in the tile.
+class EstimateWriter {
+  public:
+    EstimateWriter(HalfEstimates& out, uint32_t half) : out_(out), half_(half) {}
+    void write(size_t estimate, int x, int y, int count, const std::array<f8, 3>& colour,
+               const std::vector<f8>& bins) {
+        for (int lane = 0; lane < count; ++lane) {
+            const size_t at = out_.offset(x + lane, y);
+            out_.colour[half_][estimate][at] = {colour[0][lane], colour[1][lane], colour[2][lane]};
+            for (size_t b = 0; b < bins.size(); ++b)
+                out_.bins[estimate][at * bins.size() + b] += bins[b][lane] / kHalves;
+        }
+    }
+
+  private:
+    HalfEstimates& out_;
+    uint32_t half_;
+};
 
 }  // namespace
 
 void estimate_tile(const Film& film, const Rect& tile, HalfEstimates& out) {
-    std::vector<f8> bins(out.bins_each);
+    std::vector<f8> bins(out.bins_each), smooth_bins(out.bins_each);
     for (uint32_t number = 0; number < kHalves; ++number) {
         const auto half = std::make_unique<HalfTile>(film, V2i(tile.x0, tile.y0), number);
         const WindowWeights weights(*half);
-        for (size_t e = 0; e < kEstimates; ++e)
-            for (int y = 0; y < tile.height(); ++y)
-                for (int x = 0; x < tile.width(); x += 8) {
-                    const Regression regression(*half, weights, e == 1, x, y);
-                    std::array<f8, 3> colour;
-                    regression.estimate(half->colour, colour.data());
-                    if (!bins.empty()) regression.estimate(half->bins, bins.data());
-                    for (int lane = 0; lane < std::min(8, tile.width() - x); ++lane) {
-                        const size_t at = out.offset(tile.x0 + x + lane, tile.y0 + y);
-                        out.colour[number][e][at] = {colour[0][lane], colour[1][lane],
-                                                     colour[2][lane]};
-                        for (size_t b = 0; b < bins.size(); ++b)
-                            out.bins[e][at * bins.size() + b] += bins[b][lane] / kHalves;
-                    }
+        EstimateWriter writer(out, number);
+        for (int y = 0; y < tile.height(); ++y)
+            for (int x = 0; x < tile.width(); x += 8) {
+                const Regression first(*half, weights, false, x, y),
+                    second(*half, weights, true, x, y);
+                std::array<f8, 3> colour, smooth;
+                first.estimate(half->colour, colour.data());
+                second.estimate(half->colour, smooth.data());
+                const f8 way = way_to_smoother(first, colour, smooth);
+                for (size_t c = 0; c < 3; ++c)
+                    smooth[c] = (1.f - way) * colour[c] + way * smooth[c];
+                if (!bins.empty()) {
+                    first.estimate(half->bins, bins.data());
+                    second.estimate(half->bins, smooth_bins.data());
+                    for (size_t b = 0; b < bins.size(); ++b)
+                        smooth_bins[b] = (1.f - way) * bins[b] + way * smooth_bins[b];
                 }
+                const int count = std::min(8, tile.width() - x);
+                writer.write(0, tile.x0 + x, tile.y0 + y, count, colour, bins);
+                writer.write(1, tile.x0 + x, tile.y0 + y, count, smooth, smooth_bins);
+            }
     }
 }
 

@@ -43,7 +43,7 @@ template <class Executor>
     HalfEstimates estimates(film, grown(crop, kShrinkageReach_px, film.pixels()));
     each_tile(estimates.pixels, [&](const Rect& t) { estimate_tile(film, t, estimates); });
     const auto pixels = static_cast<size_t>(crop.width()) * static_cast<size_t>(crop.height());
-    Denoised out{crop, std::vector<V3f>(pixels), std::vector<V3f>(pixels),
+    Denoised out{crop, std::vector<V3f>(pixels), std::vector<V3f>(pixels), std::vector<V3f>(pixels),
                  std::vector<float>(pixels * estimates.bins_each)};
     each_tile(crop, [&](const Rect& t) { shrink_tile(film, estimates, t, out); });
     if (stop && *stop) return std::nullopt;

@@ -71,9 +71,10 @@ void HalfTile::dim_lonely_pixels() {
     Plane factor;
     factor.fill(1);
     each_eight(kRadius_px, [&](int i) {
-        f8 first = splat8(0), second = splat8(0);
+        f8 first = splat8(0), second = splat8(0), neighbours = splat8(0);
         each_neighbour([&](int offset) {
             const f8 other = sum_of(colour, i + offset);
+            neighbours += load8(&inside[size_t(i + offset)]);
             second = max(second, min(first, other));
             first = max(first, other);
         });
@@ -82,8 +83,10 @@ void HalfTile::dim_lonely_pixels() {
                              sqrt(load8(&variance[1][size_t(i)])) +
                              sqrt(load8(&variance[2][size_t(i)]));
         const f8 share = min(splat8(1), second / max(own, splat8(1e-30f)));
-        // k samples that are alike, and all others 0, have a mean of k variances.
-        store8(&factor[size_t(i)], kFew * deviation * deviation > own * own ? share : splat8(1));
+        // k samples that are alike, and all others 0, have a mean of k variances. A frame of one or
+        // two pixels has no second one.
+        const m8 is_lonely = (kFew * deviation * deviation > own * own) & (neighbours > 1.f);
+        store8(&factor[size_t(i)], is_lonely ? share : splat8(1));
     });
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < factor.size(); ++i) {

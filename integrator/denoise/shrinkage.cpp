@@ -50,9 +50,9 @@ void add(WaySums& sum, const WaySums& to, double weight) {
 
 // The picture is M = (A + B) / 2, an estimate E = (D(A) + D(B)) / 2, the truth T. M + sum of
 // part (E - M) has the least squared error where, for each E, the sum of part (E - M) (E' - M) is
-// the mean of (M - T) (M - E'). The noise of the halves is independent and alike, so that is the
-// mean of (A - B) (A - B - D'(A) + D'(B)) / 4. It is shrinkage as of Stein (1956), towards
-// estimates that are noisy too.
+// the mean of (M - T) (M - E'). The noise of the halves is independent, so that is the mean of
+// (A - B) (A - B - D'(A) + D'(B)) / 4. It is shrinkage as of Stein (1956), towards estimates that
+// are noisy too.
 WaySums way_sums_of(const PixelHalves& p) {
     WaySums out(0);
     const V3d apart = p.a - p.b;
@@ -65,14 +65,14 @@ WaySums way_sums_of(const PixelHalves& p) {
     return out;
 }
 
-// Parts of both ways: none is negative, and together they are 1 at most. The gain is noisy, and
-// more than all of a way does not help: where all of it is best, half of the parts are less by
-// chance. A fifth more makes up for most of that.
+// Parts of both ways: none is negative, and together they are 1 at most. As they are cut at 1, the
+// noise of the gain can only lower the parts of pixels for which 1 is best. A fifth more makes up
+// for most of that.
 V2d parts_of(const WaySums& s) {
     constexpr double kMore = 1.2;
     const V2d gain = kMore * s.gain;
     const auto share = [](double of, double all) {
-        return all > 0 ? std::clamp(of / all, 0., 1.) : 1.;
+        return all > 0 ? std::clamp(of / all, 0., 1.) : 0.;
     };
     const double determinant = s.first * s.second - s.both * s.both;
     if (determinant > 1e-6 * s.first * s.second) {
@@ -92,6 +92,10 @@ V2d parts_of(const WaySums& s) {
         if (error(edge) < error(best)) best = edge;
     return best;
 }
+
+/// Samples of each half from which on both tell which parts are best. With 2 of each, a picture of
+/// small lamps said 3 where its relative error was 7.
+constexpr uint32_t kLeastSamplesToChoose = 8;
 
 /// Sums of a rectangle of pixels, row by row; T(0) to begin with.
 template <class T>
@@ -157,18 +161,23 @@ void shrink_bins(const Film& film, const HalfEstimates& estimates, const ShownSh
 }
 
 // A pixel has a share in its own sums: by that its error would look too small. What goes to the
-// error is what the other pixels say, and the rest of the way by the other half's estimate.
-V3d squared_error_of(const PixelHalves& p, const V3d& shown, const V2d& parts,
-                     const V2d& by_others) {
+// error is what the other pixels say, and the rest of the way by the other half's estimate. That
+// one is biased where it blurs, and the other half itself is not independent of the parts: what
+// both differ by is in doubt.
+void tell_error(const PixelHalves& p, const V3d& shown, const V2d& parts, const V2d& by_others,
+                V3f& squared_error, V3f& doubt) {
     V3d times_truth = p.a * p.b;  // what is shown, times the truth: each half by the other one
+    V3d doubted(0);
     for (size_t e = 0; e < kEstimates; ++e) {
         const double other = by_others[static_cast<int>(e)],
                      rest = parts[static_cast<int>(e)] - other;
         const V3d to_a = p.of_a[e] - p.a, to_b = p.of_b[e] - p.b;
         times_truth += other * (to_a * p.b + to_b * p.a) / 2 +
                        rest * (to_a * p.of_b[e] + to_b * p.of_a[e]) / 2;
+        doubted += rest * (to_a * (p.of_b[e] - p.b) + to_b * (p.of_a[e] - p.a));
     }
-    return p.a * p.b - 2. * times_truth + shown * shown;
+    squared_error = V3f(p.a * p.b - 2. * times_truth + shown * shown);
+    doubt = V3f(doubted);
 }
 
 }  // namespace
@@ -181,12 +190,12 @@ void shrink_tile(const Film& film, const HalfEstimates& estimates, const Rect& t
         for (int y = r.y0; y < r.y1; ++y)
             for (int x = r.x0; x < r.x1; ++x) use(x, y);
     };
-    Pixels<V3d> estimate(further);
+    Pixels<V3d> light(further);
     each(further, [&](int x, int y) {
-        const size_t at = estimates.offset(x, y);
-        estimate(x, y) = V3d(estimates.colour[0][0][at]) + V3d(estimates.colour[1][0][at]);
+        const PixelHalves p = halves_of(film, estimates, x, y);
+        light(x, y) = p.a + p.b + p.of_a[0] + p.of_b[0];
     });
-    Pixels<V3d> brightness = sums_about(estimate, around, [](int) { return 1.; });
+    Pixels<V3d> brightness = sums_about(light, around, [](int) { return 1.; });
     Pixels<WaySums> own(around);
     each(around, [&](int x, int y) {
         // Errors count as shares of the brightness about a pixel, but for a factor.
@@ -202,6 +211,7 @@ void shrink_tile(const Film& film, const HalfEstimates& estimates, const Rect& t
             const V4f all = film.colour(x, y);
             out.colour[at] = {all.x, all.y, all.z};
             out.squared_error[at] = out.colour[at] * out.colour[at];
+            out.doubt[at] = V3f(0);
             if (film.spectral())
                 film.spectral()->bin_means(film.offset(x, y), film.sample_count(x, y), bins);
             return;
@@ -209,13 +219,17 @@ void shrink_tile(const Film& film, const HalfEstimates& estimates, const Rect& t
         const PixelHalves p = halves_of(film, estimates, x, y);
         WaySums others = sums(x, y);
         others.add(own(x, y), -1);
-        const V2d parts = parts_of(sums(x, y));
+        // Few samples tell too little of the parts.
+        const bool can_choose =
+            std::min(film.half_count(x, y, 0), film.half_count(x, y, 1)) >= kLeastSamplesToChoose;
+        const V2d parts = can_choose ? parts_of(sums(x, y)) : V2d(1, 0);
         const ShownShares shares(parts);
         V3d shown = shares.samples * (p.a + p.b) / 2;
         for (size_t e = 0; e < kEstimates; ++e)
             shown += shares.estimates[e] * (p.of_a[e] + p.of_b[e]) / 2;
         out.colour[at] = V3f(shown);
-        out.squared_error[at] = V3f(squared_error_of(p, shown, parts, parts_of(others)));
+        tell_error(p, shown, parts, can_choose ? parts_of(others) : parts, out.squared_error[at],
+                   out.doubt[at]);
         if (film.spectral()) shrink_bins(film, estimates, shares, x, y, bins);
     });
 }

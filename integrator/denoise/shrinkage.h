@@ -46,9 +46,12 @@ struct Denoised {
     Rect crop;
     /// Nits: between the mean of both halves and the means of their estimates.
     std::vector<V3f> colour;
-    /// (colour - truth)^2 of R, G and B, nits^2, without bias: it may be negative, and says little
-    /// of one pixel and much of a thousand.
+    /// (colour - truth)^2 of R, G and B, nits^2: it may be negative, and says little of one pixel
+    /// and much of a thousand. Their mean has no bias but for `doubt`.
     std::vector<V3f> squared_error;
+    /// What of squared_error hangs on how the truth is known where a pixel's own noise had a part
+    /// in what is shown of it, nits^2.
+    std::vector<V3f> doubt;
     /// Of a film with bins, by the same weights as colour: W/(m2 sr nm), pixel-major.
     std::vector<float> bins;
 

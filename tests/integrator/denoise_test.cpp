@@ -217,6 +217,32 @@ TEST(Denoiser, BlackPicturesAndSinglePixelsAreNoFault) {
     const V3f alone = denoised(film).colour.front();
     EXPECT_NEAR(alone.x, 0.5f, 1e-6);
     EXPECT_NEAR(alone.z, 2, 1e-5);
+    // Pixels without two others about them are no fireflies.
+    for (const int width : {1, 2}) {
+        Film tiny({width, 1}, {0, 0, width, 1}, {}, {}, {.halves = true});
+        for (int x = 0; x < width; ++x)
+            for (uint32_t i = 0; i < 2; ++i) {
+                sample.colour = Rgb(float(x + 1));
+                tiny.add(x, 0, i, sample);
+            }
+        for (const V3f& colour : denoised(tiny).colour) EXPECT_GE(colour.x, 0.9f) << width;
+    }
+}
+
+// A lamp that few samples meet does not shine on the dark about it.
+TEST(Denoiser, TheDarkBesideALampStaysDark) {
+    const NoisyPicture lamp{[](int x, int y) {
+        return V3f(std::abs(x - 48) < 2 && std::abs(y - 40) < 2 ? 1e5f : 0.f);
+    }};
+    for (const auto& [chance, samples] : {std::pair(0.3f, 16u), {0.2f, 32u}})
+        for (const uint32_t seed : {11u, 12000u, 13000u, 140000u}) {
+            const Denoised picture = denoised(film_of(lamp, samples, chance, seed));
+            for (int y = 0; y < kFrame.y; ++y)
+                for (int x = 0; x < kFrame.x; ++x)
+                    if (std::max(std::abs(x - 48), std::abs(y - 40)) > 3)
+                        ASSERT_LT(picture.colour[picture.offset(x, y)].x, 5)
+                            << x << " " << y << ", " << chance;
+        }
 }
 
 TEST(Denoiser, CropsAndThreadsHaveTheSameBytes) {

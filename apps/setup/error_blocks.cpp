@@ -56,27 +56,30 @@ DenoisedError ErrorBlocks::over(const Rect& r) const {
     each([&](double s, double n) { all += s, pixels += n; });
     const double mean = all / pixels;
     double chance = 0;  // the product of two halves' noise, in a block
-    double doubt = 0;
+    double doubt = 0, doubt_by_chance = 0;
     for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x) {
             const auto at = static_cast<size_t>(y * across_ + x);
-            doubt += std::abs(doubt_[at]) / kDeviations;
+            doubt += doubt_[at];
+            doubt_by_chance += doubt_[at] * doubt_[at];
             if (!(variance_[at] > 0)) continue;
             // Pixels that have the noise, by how even it is (Kish 1965); but no less than 4 x 4.
             constexpr double kLeastShare = 0.25;
             const double alike = variance_[at] * variance_[at] / variance_squares_[at];
             chance += variance_[at] * variance_[at] / std::max(alike, kLeastShare * count_[at]);
         }
+    // What of it all blocks have in common: their own is in what they part by.
+    doubt = std::max(0., doubt * doubt - doubt_by_chance) / (kDeviations * kDeviations);
     double squares = 0, groups = 0;
     each([&](double s, double n) {
         squares += (s - n * mean) * (s - n * mean);
         groups += 1;
     });
-    if (groups < 2) return {mean, (std::sqrt(std::max(all * all, chance)) + doubt) / pixels};
+    if (groups < 2) return {mean, std::sqrt(std::max(all * all, chance) + doubt) / pixels};
     const double parted = squares * groups / (groups - 1);
-    // Wider, as the deviation is known from few numbers.
+    // Wider, as the deviation is known from few numbers; chance is from many pixels.
     const double widening = student_t_975(groups - 1) / kDeviations;
-    return {mean, (widening * std::sqrt(std::max(parted, chance)) + doubt) / pixels};
+    return {mean, std::sqrt(std::max(widening * widening * parted, chance) + doubt) / pixels};
 }
 
 }  // namespace petzval::apps

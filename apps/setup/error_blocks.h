@@ -43,7 +43,7 @@ class ErrorBlocks {
     void add(int x, int y, double squared_error, double variance, double doubt);
     /// Error over a rectangle of blocks. Its deviation follows from how the blocks part, or is what
     /// it is where noise that is in single pixels is as likely in others about them. What is in
-    /// doubt moves the bounds by as much.
+    /// doubt is one more independent deviation, as large as the bounds.
     [[nodiscard]] DenoisedError over(const Rect& blocks) const;
 
   private:

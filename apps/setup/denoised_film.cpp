@@ -114,8 +114,8 @@ std::shared_ptr<const DenoisedFilm> denoised_film(const Film& film,
         for (int x = crop.x0; x < crop.x1; ++x) {
             const size_t at = out->picture.offset(x, y);
             const V3f error = out->picture.squared_error[at], doubt = out->picture.doubt[at];
-            const bool has_both = film.half_count(x, y, 0) > 0 && film.half_count(x, y, 1) > 0;
             const auto a = film.half(x, y, 0), b = film.half(x, y, 1);
+            const bool has_both = a.count > 0 && b.count > 0;
             const V3f apart = a.colour - b.colour;
             const Imath::V3d bright = surroundings.mean(x - crop.x0, y - crop.y0);
             double squares = 0, noise = 0, variance = 0, doubted = 0;

@@ -28,12 +28,6 @@ struct Rect {
     bool operator==(const Rect&) const = default;
 };
 
-/// A rectangle with so many pixels more on each side, as far as `within` goes.
-[[nodiscard]] inline Rect grown(const Rect& r, int by_px, const Rect& within) {
-    return {std::max(r.x0 - by_px, within.x0), std::max(r.y0 - by_px, within.y0),
-            std::min(r.x1 + by_px, within.x1), std::min(r.y1 + by_px, within.y1)};
-}
-
 /// One finished sample of a pixel.
 struct FilmSample {
     Rgb colour;
@@ -92,15 +86,6 @@ class Film {
     /// Means of a half of a pixel of a film with halves.
     [[nodiscard]] FilmHalves::Half half(int x, int y, uint32_t half) const {
         return halves_->half(offset(x, y), half);
-    }
-    /// Number of samples of a half of a pixel of a film with halves.
-    [[nodiscard]] uint32_t half_count(int x, int y, uint32_t half) const {
-        return halves_->count(offset(x, y), half);
-    }
-    /// Bins of a half of a pixel of a film with halves and bins, spectral()->bins().count of them.
-    void half_bins(int x, int y, uint32_t half, float* out) const {
-        const size_t at = offset(x, y);
-        spectral_->half_bin_means(at, half, halves_->count(at, half), out);
     }
     [[nodiscard]] const std::vector<Aov>& aovs() const { return aovs_; }
     /// Spectral sums: bins, XYZ and errors; nothing unless the film was made with bins.

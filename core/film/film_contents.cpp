@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/film/film.h"
+#include "core/film/grown.h"
 
 namespace petzval {
 namespace {

@@ -6,7 +6,7 @@ namespace petzval {
 FilmHalves::Half FilmHalves::half(size_t pixel, uint32_t half) const {
     const Sums& sums = pixels_[pixel].halves[half];
     const double count = pixels_[pixel].count[half];
-    Half out{V3f(0.f), V3f(0.f), {}};
+    Half out{V3f(0.f), V3f(0.f), {}, pixels_[pixel].count[half]};
     if (count == 0) return out;
     for (size_t i = 0; i < 3; ++i) {
         const double mean = sums.colour[i].value() / count, square = mean * mean;

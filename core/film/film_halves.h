@@ -68,11 +68,9 @@ class FilmHalves {
         V3f colour;    ///< nits
         V3f variance;  ///< of colour, as if samples were independent; its square for a single one
         std::array<float, kGuideNumbers> guide;
+        uint32_t count;  ///< samples
     };
     [[nodiscard]] Half half(size_t pixel, uint32_t half) const;
-    [[nodiscard]] uint32_t count(size_t pixel, uint32_t half) const {
-        return pixels_[pixel].count[half];
-    }
 
     void pack(size_t pixel, uint8_t* to) const { std::memcpy(to, &pixels_[pixel], sizeof(Pixel)); }
     /// Adds what pack() wrote.

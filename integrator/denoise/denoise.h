@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/film/film.h"
+#include "core/film/grown.h"
 #include "integrator/denoise/shrinkage.h"
 
 namespace petzval::integrator {

@@ -59,7 +59,7 @@ void HalfTile::read(const Film& film, V2i tile, uint32_t half) {
             }
             for (size_t g = 0; g < kGuideNumbers; ++g) guide[g][i] = from.guide[g];
             if (of_pixel.empty()) continue;
-            film.half_bins(film_x, film_y, half, of_pixel.data());
+            half_bins(film, film_x, film_y, half, of_pixel.data());
             for (size_t b = 0; b < bins.size(); ++b) bins[b][i] = of_pixel[b];
         }
 }

@@ -25,6 +25,11 @@ inline void store8(float* to, f8 value) {
     return a < b ? a : b;
 }
 
+/// Bins of a half of a pixel of a film with halves and bins, as many as it has.
+inline void half_bins(const Film& film, int x, int y, uint32_t half, float* out) {
+    film.spectral()->half_bin_means(film.offset(x, y), half, film.half(x, y, half).count, out);
+}
+
 /// Planes of numbers about a tile. Pixels beyond the frame are 0, and so is `inside` there.
 struct HalfTile {
     static constexpr int kReach = kDenoiserReach_px - kShrinkageReach_px,

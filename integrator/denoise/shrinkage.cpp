@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/film/grown.h"
+#include "integrator/denoise/half_tile.h"
+
 namespace petzval::integrator {
 namespace {
 
@@ -27,7 +30,7 @@ PixelHalves halves_of(const Film& film, const HalfEstimates& estimates, int x, i
 
 /// Whether both halves of a pixel have samples: one alone knows nothing of its error.
 bool has_both(const Film& film, int x, int y) {
-    return film.half_count(x, y, 0) > 0 && film.half_count(x, y, 1) > 0;
+    return film.half(x, y, 0).count > 0 && film.half(x, y, 1).count > 0;
 }
 
 /// What tells which parts of both ways leave the least squared error, as sums over pixels.
@@ -149,7 +152,7 @@ void shrink_bins(const Film& film, const HalfEstimates& estimates, const ShownSh
     std::array<std::vector<float>, kHalves> half;
     for (uint32_t h = 0; h < kHalves; ++h) {
         half[h].resize(estimates.bins_each);
-        film.half_bins(x, y, h, half[h].data());
+        half_bins(film, x, y, h, half[h].data());
     }
     const size_t at = estimates.offset(x, y) * estimates.bins_each;
     for (size_t b = 0; b < estimates.bins_each; ++b) {
@@ -221,7 +224,7 @@ void shrink_tile(const Film& film, const HalfEstimates& estimates, const Rect& t
         others.add(own(x, y), -1);
         // Few samples tell too little of the parts.
         const bool can_choose =
-            std::min(film.half_count(x, y, 0), film.half_count(x, y, 1)) >= kLeastSamplesToChoose;
+            std::min(film.half(x, y, 0).count, film.half(x, y, 1).count) >= kLeastSamplesToChoose;
         const V2d parts = can_choose ? parts_of(sums(x, y)) : V2d(1, 0);
         const ShownShares shares(parts);
         V3d shown = shares.samples * (p.a + p.b) / 2;

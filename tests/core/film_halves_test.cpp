@@ -110,8 +110,8 @@ TEST(FilmHalves, HaveTheirBins) {
     other.add_packed(0, 0, packed.data());
     for (const Film* of : {&film, &other}) {
         std::array<float, 3> even, odd, all, without;
-        of->half_bins(0, 0, 0, even.data());
-        of->half_bins(0, 0, 1, odd.data());
+        of->spectral()->half_bin_means(0, 0, of->half(0, 0, 0).count, even.data());
+        of->spectral()->half_bin_means(0, 1, of->half(0, 0, 1).count, odd.data());
         of->spectral()->bin_means(0, 9, all.data());
         plain.spectral()->bin_means(0, 9, without.data());
         EXPECT_FLOAT_EQ(even[0], 4);  // of 0, 2, 4, 6 and 8

@@ -272,22 +272,21 @@ void estimate_tile(const Film& film, const Rect& tile, HalfEstimates& out) {
         EstimateWriter writer(out, number);
         for (int y = 0; y < tile.height(); ++y)
             for (int x = 0; x < tile.width(); x += 8) {
-                const Regression first(*half, weights, false, x, y),
-                    second(*half, weights, true, x, y);
+                const int count = std::min(8, tile.width() - x);
+                const Regression first(*half, weights, false, x, y);
                 std::array<f8, 3> colour, smooth;
                 first.estimate(half->colour, colour.data());
+                if (!bins.empty()) first.estimate(half->bins, bins.data());
+                writer.write(0, tile.x0 + x, tile.y0 + y, count, colour, bins);
+                if (!out.can_choose) continue;
+                const Regression second(*half, weights, true, x, y);
                 second.estimate(half->colour, smooth.data());
+                if (!bins.empty()) second.estimate(half->bins, smooth_bins.data());
                 const f8 way = way_to_smoother(first, colour, smooth);
                 for (size_t c = 0; c < 3; ++c)
                     smooth[c] = (1.f - way) * colour[c] + way * smooth[c];
-                if (!bins.empty()) {
-                    first.estimate(half->bins, bins.data());
-                    second.estimate(half->bins, smooth_bins.data());
-                    for (size_t b = 0; b < bins.size(); ++b)
-                        smooth_bins[b] = (1.f - way) * bins[b] + way * smooth_bins[b];
-                }
-                const int count = std::min(8, tile.width() - x);
-                writer.write(0, tile.x0 + x, tile.y0 + y, count, colour, bins);
+                for (size_t b = 0; b < bins.size(); ++b)
+                    smooth_bins[b] = (1.f - way) * bins[b] + way * smooth_bins[b];
                 writer.write(1, tile.x0 + x, tile.y0 + y, count, smooth, smooth_bins);
             }
     }

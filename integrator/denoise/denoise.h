@@ -18,8 +18,9 @@ namespace petzval::integrator {
 /// Side of the tiles in which a picture is denoised.
 inline constexpr int kDenoiserTile_px = 32;
 
-/// Estimates the pixels of a tile, twice, by each half of a film's samples. What comes of a pixel
-/// follows from samples that are at most kDenoiserReach_px - kShrinkageReach_px away from it.
+/// Estimates the pixels of a tile by each half of a film's samples: twice, where the second counts.
+/// What comes of a pixel follows from samples that are at most kDenoiserReach_px -
+/// kShrinkageReach_px away from it.
 void estimate_tile(const Film&, const Rect& tile, HalfEstimates&);
 
 /// Denoises what a film with halves shows: nothing where `stop` is set meanwhile. Threads and crops

@@ -96,10 +96,6 @@ V2d parts_of(const WaySums& s) {
     return best;
 }
 
-/// Samples of each half from which on both tell which parts are best. With 2 of each, a picture of
-/// small lamps said 3 where its relative error was 7.
-constexpr uint32_t kLeastSamplesToChoose = 8;
-
 /// Sums of a rectangle of pixels, row by row; T(0) to begin with.
 template <class T>
 class Pixels {
@@ -222,7 +218,6 @@ void shrink_tile(const Film& film, const HalfEstimates& estimates, const Rect& t
         const PixelHalves p = halves_of(film, estimates, x, y);
         WaySums others = sums(x, y);
         others.add(own(x, y), -1);
-        // Few samples tell too little of the parts.
         const bool can_choose =
             std::min(film.half(x, y, 0).count, film.half(x, y, 1).count) >= kLeastSamplesToChoose;
         const V2d parts = can_choose ? parts_of(sums(x, y)) : V2d(1, 0);

@@ -16,6 +16,11 @@ inline constexpr int kShrinkageRadius_px = 7;
 /// pixels about it.
 inline constexpr int kShrinkageReach_px = 2 * kShrinkageRadius_px;
 
+/// Samples of each half from which on both tell which parts of the estimates are best; below, the
+/// first one is shown. With 2 of each, a picture of small lamps said 3 where its relative error was
+/// 7.
+inline constexpr uint32_t kLeastSamplesToChoose = 8;
+
 /// Estimates that are made of each pixel: one that keeps more detail, one that leaves less noise.
 inline constexpr size_t kEstimates = 2;
 
@@ -24,13 +29,15 @@ struct HalfEstimates {
     Rect pixels;
     std::array<std::array<std::vector<V3f>, kEstimates>, kHalves> colour;  ///< nits
     size_t bins_each;  ///< bins of a pixel; none of a film without
+    bool can_choose;   ///< whether a pixel has samples enough for the second estimate to count
     /// Means of both halves, W/(m2 sr nm), pixel-major.
     std::array<std::vector<float>, kEstimates> bins;
 
     /// Black estimates of these pixels of a film.
     HalfEstimates(const Film& film, const Rect& of)
         : pixels(of),
-          bins_each(film.spectral() ? static_cast<size_t>(film.spectral()->bins().count) : 0) {
+          bins_each(film.spectral() ? static_cast<size_t>(film.spectral()->bins().count) : 0),
+          can_choose(film.taken_range().most >= kHalves * kLeastSamplesToChoose) {
         const auto count = static_cast<size_t>(of.width()) * static_cast<size_t>(of.height());
         for (auto& half : colour)
             for (auto& estimate : half) estimate.resize(count, V3f(0));

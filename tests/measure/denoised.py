@@ -56,6 +56,23 @@ def views(open_scenes, folder):
     return found
 
 
+def wanted(rows, open_scenes, folder):
+    """Name and words of the views that --rows names, or of all; says which are skipped."""
+    found = views(open_scenes, os.path.join(folder, "rooms"))
+    for name in rows.split(",") if rows else found:
+        if name not in found:
+            sys.exit("--rows: no view %s; there are %s" % (name, ", ".join(found)))
+        if found[name]:
+            yield name, found[name]
+        else:
+            print("skipped: %s, not in the folder of --scenes" % name)
+
+
+def say_mean(lines, of):
+    if lines:
+        print("\ngeometric mean of the %s: %.3g" % (of, math.exp(sum(math.log(r) for r, _ in lines) / len(lines))))
+
+
 def means(path):
     """Means over the seeds of the points of a report: {method: {samples: {column: mean}}}."""
     found = {}
@@ -108,15 +125,8 @@ def main():
     a = parser.parse_args()
     lines = []
     with tempfile.TemporaryDirectory() as folder:
-        all_views = views(a.scenes, os.path.join(folder, "rooms"))
-        for name in a.rows.split(",") if a.rows else all_views:
-            if name not in all_views:
-                sys.exit("--rows: no view %s; there are %s" % (name, ", ".join(all_views)))
-            if not all_views[name]:
-                print("skipped: %s, not in the folder of --scenes" % name)
-                continue
-            report = os.path.join(a.output or folder, name.replace(" ", "_"))
-            points = measure(a, all_views[name], report)
+        for name, words in wanted(a.rows, a.scenes, folder):
+            points = measure(a, words, os.path.join(a.output or folder, name.replace(" ", "_")))
             if not points:
                 print("skipped: %s, as --budget is too small for it" % name)
                 continue
@@ -125,9 +135,7 @@ def main():
     print("\n| view | samples | symmetric MSE, over that without | FLIP without, with | CPU time | error x CPU time | "
           "at the most samples |\n|%s" % ("---|" * 7))
     print("\n".join(text for _, text in sorted(lines, reverse=True)))
-    if lines:
-        mean = math.exp(sum(math.log(r) for r, _ in lines) / len(lines))
-        print("\ngeometric mean of the symmetric MSE, bounds as they are: %.3g" % mean)
+    say_mean(lines, "symmetric MSE, bounds as they are")
 
 
 if __name__ == "__main__":

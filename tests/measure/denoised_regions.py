@@ -65,7 +65,7 @@ def by_block(values, mask):
 
 
 def ratio(over, under, mask):
-    """Ratio of two sums over a mask, in words, and how well blocks tell both."""
+    """Ratio of two sums over a mask, in words; "?" where blocks do not tell both."""
     sums = [by_block(v, mask) for v in (over, under)]
     known = all(s.sum() > 2 * math.sqrt(max((s ** 2).sum() - s.sum() ** 2 / len(s), 0)) for s in sums)
     return "%.2g" % (sums[0].sum() / sums[1].sum()) if known else "?"
@@ -118,21 +118,15 @@ def main():
     a = parser.parse_args()
     lines = []
     with tempfile.TemporaryDirectory() as folder:
-        views = views_of.views(a.scenes, os.path.join(folder, "rooms"))
         if a.keep:
             os.makedirs(a.keep, exist_ok=True)
-        for name in a.rows.split(",") if a.rows else views:
-            if not views.get(name):
-                print("skipped: %s, no such view, or not in the folder of --scenes" % name)
-                continue
-            lines.append(measure(a, name, views[name], folder))
+        for name, words in views_of.wanted(a.rows, a.scenes, folder):
+            lines.append(measure(a, name, words, folder))
             print(lines[-1][1], flush=True)
     print("\n| view | error without | error, true | said | squares, ratio | symmetric, ratio | lamps (pixels) | "
           "edges | even |\n|%s" % ("---|" * 9))
     print("\n".join(text for _, text in sorted(lines, reverse=True)))
-    if lines:
-        mean = math.exp(sum(math.log(r) for r, _ in lines) / len(lines))
-        print("\ngeometric mean of the symmetric ratios: %.3g" % mean)
+    views_of.say_mean(lines, "symmetric ratios")
 
 
 if __name__ == "__main__":

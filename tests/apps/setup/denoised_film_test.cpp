@@ -108,6 +108,25 @@ TEST(DenoisedFilm, PartsAreToldTheirOwnError) {
     EXPECT_LT(told_right, 9 * right);
 }
 
+// What is in doubt widens the bounds where all blocks have it in common. Where it is as likely more
+// as less, it is in what the blocks part by.
+TEST(DenoisedError, IsWiderByWhatIsInDoubt) {
+    const auto blocks = [](double doubt, bool alike) {
+        ErrorBlocks out(64, 64);
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const bool even = (x / kErrorBlock_px + y / kErrorBlock_px) % 2 == 0;
+                out.add(x, y, 1, 0.01, alike || even ? doubt : -doubt);
+            }
+        return out.over({0, 0, 8, 8});
+    };
+    const double sure = blocks(0, true).deviation;
+    EXPECT_EQ(blocks(0.5, false).deviation, sure);
+    // 64 blocks of 32 each: their sum, without what 64 that are independent would have.
+    const double common = 32 * std::sqrt(64. * 63) / (kDeviations * 64 * 64);
+    EXPECT_NEAR(blocks(0.5, true).deviation, std::hypot(sure, common), 1e-9);
+}
+
 TEST(DenoisedError, SaysAtMostWhereItIsBelowItsOwnNoise) {
     const DenoisedError known{0.01, 0.001}, unknown{0.001, 0.001}, negative{-0.01, 0.001};
     EXPECT_FALSE(known.is_at_most());

@@ -30,7 +30,7 @@ inline constexpr size_t kGuideNumbers = 8;
 
 /// How far a denoiser looks from a pixel: a part of a frame that is to be denoised keeps so much
 /// around it.
-inline constexpr int kDenoiserReach_px = 26;
+inline constexpr int kDenoiserReach_px = 34;
 
 /// Halves of a pixel's samples: each has a sequence of its own, so that they are independent.
 inline constexpr uint32_t kHalves = 2;

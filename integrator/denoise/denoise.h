@@ -11,6 +11,7 @@
 
 #include "core/film/film.h"
 #include "core/film/grown.h"
+#include "integrator/denoise/pilots.h"
 #include "integrator/denoise/shrinkage.h"
 
 namespace petzval::integrator {
@@ -18,10 +19,13 @@ namespace petzval::integrator {
 /// Side of the tiles in which a picture is denoised.
 inline constexpr int kDenoiserTile_px = 32;
 
-/// Estimates the pixels of a tile by each half of a film's samples: twice, where the second counts.
-/// What comes of a pixel follows from samples that are at most kDenoiserReach_px -
-/// kShrinkageReach_px away from it.
-void estimate_tile(const Film&, const Rect& tile, HalfEstimates&);
+/// Writes the first estimates of a tile's pixels by each half of a film's samples, as far as there
+/// is room for them, and what the second ones need of them.
+void estimate_first(const Film&, const Rect& tile, HalfEstimates&, Pilots&);
+
+/// Writes the second estimates of a tile's pixels. Pilots and first estimates are there up to
+/// kPilotReach_px away from the tile, as far as the frame goes.
+void estimate_second(const Film&, const Rect& tile, const Pilots&, HalfEstimates&);
 
 /// Denoises what a film with halves shows: nothing where `stop` is set meanwhile. Threads and crops
 /// do not change a bit of a pixel.
@@ -43,7 +47,14 @@ template <class Executor>
     };
     const Rect crop = film.crop();
     HalfEstimates estimates(film, grown(crop, kShrinkageReach_px, film.pixels()));
-    each_tile(estimates.pixels, [&](const Rect& t) { estimate_tile(film, t, estimates); });
+    {
+        Pilots pilots(film, estimates);
+        each_tile(pilots.pixels,
+                  [&](const Rect& t) { estimate_first(film, t, estimates, pilots); });
+        if (estimates.can_choose)
+            each_tile(estimates.pixels,
+                      [&](const Rect& t) { estimate_second(film, t, pilots, estimates); });
+    }
     const auto pixels = static_cast<size_t>(crop.width()) * static_cast<size_t>(crop.height());
     Denoised out{crop, std::vector<V3f>(pixels), std::vector<V3f>(pixels), std::vector<V3f>(pixels),
                  std::vector<float>(pixels * estimates.bins_each)};

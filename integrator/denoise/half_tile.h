@@ -32,8 +32,7 @@ inline void half_bins(const Film& film, int x, int y, uint32_t half, float* out)
 
 /// Planes of numbers about a tile. Pixels beyond the frame are 0, and so is `inside` there.
 struct HalfTile {
-    static constexpr int kReach = kDenoiserReach_px - kShrinkageReach_px,
-                         kSide = kDenoiserTile_px + 2 * kReach;
+    static constexpr int kReach = 12, kSide = kDenoiserTile_px + 2 * kReach;
     /// One more row of eight: what is read eight at once may begin at the last number.
     using Plane = std::array<float, kSide * kSide + 8>;
 

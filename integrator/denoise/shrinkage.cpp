@@ -154,7 +154,9 @@ void shrink_bins(const Film& film, const HalfEstimates& estimates, const ShownSh
     for (size_t b = 0; b < estimates.bins_each; ++b) {
         double sum = shares.samples * (double(half[0][b]) + double(half[1][b])) / 2;
         for (size_t e = 0; e < kEstimates; ++e)
-            sum += shares.estimates[e] * double(estimates.bins[e][at + b]);
+            sum += shares.estimates[e] *
+                   (double(estimates.bins[0][e][at + b]) + double(estimates.bins[1][e][at + b])) /
+                   2;
         out[b] = static_cast<float>(sum);
     }
 }

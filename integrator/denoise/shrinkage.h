@@ -30,8 +30,8 @@ struct HalfEstimates {
     std::array<std::array<std::vector<V3f>, kEstimates>, kHalves> colour;  ///< nits
     size_t bins_each;  ///< bins of a pixel; none of a film without
     bool can_choose;   ///< whether a pixel has samples enough for the second estimate to count
-    /// Means of both halves, W/(m2 sr nm), pixel-major.
-    std::array<std::vector<float>, kEstimates> bins;
+    /// W/(m2 sr nm), pixel-major.
+    std::array<std::array<std::vector<float>, kEstimates>, kHalves> bins;
 
     /// Black estimates of these pixels of a film.
     HalfEstimates(const Film& film, const Rect& of)
@@ -41,7 +41,8 @@ struct HalfEstimates {
         const auto count = static_cast<size_t>(of.width()) * static_cast<size_t>(of.height());
         for (auto& half : colour)
             for (auto& estimate : half) estimate.resize(count, V3f(0));
-        for (auto& estimate : bins) estimate.resize(count * bins_each);
+        for (auto& half : bins)
+            for (auto& estimate : half) estimate.resize(count * bins_each);
     }
     [[nodiscard]] size_t offset(int x, int y) const {
         return static_cast<size_t>(y - pixels.y0) * pixels.width() + (x - pixels.x0);

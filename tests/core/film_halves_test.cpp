@@ -124,7 +124,7 @@ TEST(FilmHalves, HaveTheirBins) {
 TEST(FilmHalves, AFilmKeepsPixelsAroundItsCrop) {
     const Film film({100, 50}, {40, 2, 50, 10}, {}, {}, kHalved);
     EXPECT_EQ(film.crop(), (Rect{40, 2, 50, 10}));
-    EXPECT_EQ(film.pixels(), (Rect{14, 0, 76, 36}));
+    EXPECT_EQ(film.pixels(), (Rect{6, 0, 84, 44}));
     EXPECT_EQ(Film({100, 50}, {40, 2, 50, 10}, {}).pixels(), (Rect{40, 2, 50, 10}));
 }
 

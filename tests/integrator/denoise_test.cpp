@@ -110,6 +110,19 @@ TEST(Denoiser, TexturesAreKept) {
     EXPECT_LT(errors.denoised, 0.5 * errors_of(unguided, denoised(unguided), blind).denoised);
 }
 
+// An edge that the noise of the samples hides, and a pilot estimate shows. With weights from the
+// samples in both estimates the error is 0.037 of that without.
+TEST(Denoiser, FaintEdgesAreFoundInNoise) {
+    const NoisyPicture edge{[](int x, int) { return V3f(x < kFrame.x / 2 ? 1.f : 1.5f); }};
+    double noisy = 0, left = 0;
+    for (uint32_t seed = 0; seed < 4; ++seed) {
+        const Film film = film_of(edge, 32, 0.5f, 11 + 1000 * seed);
+        const Errors errors = errors_of(film, denoised(film), edge);
+        noisy += errors.noisy, left += errors.denoised;
+    }
+    EXPECT_LT(left, 0.028 * noisy);
+}
+
 // Grains that no guide shows, at noise that is less or more than they are. With 48 samples the
 // first estimate alone has 1.07 times the error of the picture.
 TEST(Denoiser, DetailThatNoGuideShowsIsNoWorseThanWithout) {
@@ -146,7 +159,7 @@ TEST(Denoiser, ItsStatedErrorIsTheTrueOne) {
 // Where noise and detail are about as large, a pixel's own noise has a part in how much of it is
 // taken away. The stated error leaves that out: over many pictures it is the true one.
 TEST(Denoiser, ItsStatedErrorIsNoSmallerForWhatItWasFittedTo) {
-    constexpr int kPictures = 40;
+    constexpr int kPictures = 120;
     double sum = 0, squares = 0, truth = 0;
     for (uint32_t seed = 0; seed < kPictures; ++seed) {
         const Film film = film_of(kHidden, 16, 1, 77000 + 1000 * seed);

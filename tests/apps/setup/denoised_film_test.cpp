@@ -16,12 +16,13 @@ constexpr float kTruth_nits = 2;
 
 /// Even light. A sample is the truth times a number whose mean is 1; `chance`: that it is not 0.
 std::shared_ptr<const DenoisedFilm> denoised_even_light(uint32_t seed, float chance_left,
-                                                        float chance_right) {
-    Film film(kFrame, {0, 0, kFrame.x, kFrame.y}, {}, {}, {.halves = true});
+                                                        float chance_right,
+                                                        const V2i& frame = kFrame) {
+    Film film(frame, {0, 0, frame.x, frame.y}, {}, {}, {.halves = true});
     test::Random random(seed);
-    for (int y = 0; y < kFrame.y; ++y)
-        for (int x = 0; x < kFrame.x; ++x) {
-            const float chance = x < kFrame.x / 2 ? chance_left : chance_right;
+    for (int y = 0; y < frame.y; ++y)
+        for (int x = 0; x < frame.x; ++x) {
+            const float chance = x < frame.x / 2 ? chance_left : chance_right;
             for (uint32_t i = 0; i < 16; ++i) {
                 const float u = random.next(), v = random.next();
                 FilmSample sample;
@@ -37,14 +38,15 @@ std::shared_ptr<const DenoisedFilm> denoised_even_light(uint32_t seed, float cha
 /// that its mean over any square is the truth but for a few per cent.
 double true_squared(const DenoisedFilm& film, int x0, int x1) {
     double squares = 0;
-    for (int y = 0; y < kFrame.y; ++y)
+    const int height = film.picture.crop.height();
+    for (int y = 0; y < height; ++y)
         for (int x = x0; x < x1; ++x)
             for (int c = 0; c < 3; ++c) {
                 const V3f& colour = film.picture.colour[film.picture.offset(x, y)];
                 squares += std::pow(double(colour[c]) - double(kTruth_nits), 2);
             }
     const double scale = double(kTruth_nits) * double(kTruth_nits);
-    return squares / (3. * (x1 - x0) * kFrame.y * (scale + film.floor_nits * film.floor_nits));
+    return squares / (3. * (x1 - x0) * height * (scale + film.floor_nits * film.floor_nits));
 }
 
 TEST(DenoisedFilm, ItsBoundsHoldTheTruth) {
@@ -85,20 +87,22 @@ TEST(DenoisedFilm, BoundsOfRegionsHoldTheTruth) {
 // A noisy half beside a quiet one: each is told its own error, not that of the whole.
 TEST(DenoisedFilm, PartsAreToldTheirOwnError) {
     constexpr int kPictures = 8, kMargin = 16;
+    // Each half holds squares that know its error.
+    constexpr V2i kWide{2 * kFrame.x, kFrame.y};
     double left = 0, right = 0, told_left = 0, told_right = 0;
     for (uint32_t seed = 0; seed < kPictures; ++seed) {
-        const auto film = denoised_even_light(seed + 100, 0.05f, 1);
-        left += true_squared(*film, 0, kFrame.x / 2 - kMargin) / kPictures;
-        right += true_squared(*film, kFrame.x / 2 + kMargin, kFrame.x) / kPictures;
-        const int width = kFrame.x / 2 - kMargin;
-        for (int y = 0; y < kFrame.y; ++y)
+        const auto film = denoised_even_light(seed + 100, 0.05f, 1, kWide);
+        left += true_squared(*film, 0, kWide.x / 2 - kMargin) / kPictures;
+        right += true_squared(*film, kWide.x / 2 + kMargin, kWide.x) / kPictures;
+        const int width = kWide.x / 2 - kMargin;
+        for (int y = 0; y < kWide.y; ++y)
             for (int x = 0; x < width; ++x) {
                 const auto told = [&](int column) {
                     const float error = film->error_about[film->picture.offset(column, y)];
-                    return double(error) * double(error) / (kPictures * width * kFrame.y);
+                    return double(error) * double(error) / (kPictures * width * kWide.y);
                 };
                 told_left += told(x);
-                told_right += told(kFrame.x - 1 - x);
+                told_right += told(kWide.x - 1 - x);
             }
     }
     EXPECT_GT(left, 16 * right);

@@ -17,7 +17,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "PETZVALS";
-constexpr uint64_t kVersion = 4;
+/// What a pixel holds, and how many pixels a film keeps about its crop, are parts of the format.
+constexpr uint64_t kVersion = 5;
 /// Bytes before the header: the text, the version and the length.
 constexpr size_t kStartBytes = kMagic.size() + 2 * sizeof(uint64_t);
 /// Longest header: a command line and the facts of a scene are far shorter.

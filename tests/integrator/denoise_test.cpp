@@ -173,6 +173,16 @@ TEST(Denoiser, ItsStatedErrorIsNoSmallerForWhatItWasFittedTo) {
     EXPECT_LT(deviation, 0.01 * truth / kPictures);
 }
 
+// Light of a hundred-thousandth of a nit is denoised as light of a nit is.
+TEST(Denoiser, DimPicturesAreDenoisedAsBrightOnes) {
+    constexpr float kDim = 1e-5f;
+    const NoisyPicture dim{[](int x, int y) { return kStripes.truth(x, y) * kDim; }};
+    const Film film = film_of(kHidden, 64, 0.5f, 3), dim_film = film_of(dim, 64, 0.5f, 3);
+    const double bright = errors_of(film, denoised(film), kHidden).denoised;
+    const double scaled = errors_of(dim_film, denoised(dim_film), dim).denoised;
+    EXPECT_NEAR(scaled / (double(kDim) * double(kDim)) / bright, 1, 0.01);
+}
+
 // A window never makes light: what comes of a pixel lies within what is about it.
 TEST(Denoiser, NothingIsNegativeOrBrighterThanItsSamples) {
     const NoisyPicture edges{

@@ -143,7 +143,7 @@ TEST_F(StateFile, AnotherVersionSaysWhichOne) {
     other[8] = 7;
     write(other);
     EXPECT_EQ(complaint(), path_.string() +
-                               ": is a state of version 7, and this program reads version 4; use "
+                               ": is a state of version 7, and this program reads version 5; use "
                                "the program that wrote it");
 }
 

@@ -23,7 +23,7 @@ struct ColourEstimate {
 };
 
 /// Regressors of a pixel of the window: 1, differences of the guides, and its place.
-constexpr size_t kRegressors = 1 + kGuideNumbers + 2;
+inline constexpr size_t kRegressors = 1 + kGuideNumbers + 2;
 using Regressors = std::array<f8, kRegressors>;
 
 /// Linear regression about eight pixels. The estimate of a pixel is the regression's value there: a

@@ -33,15 +33,16 @@ WindowWeights::WindowWeights(const Compared& of)
 // equation 3).
 f8 WindowWeights::distance(int i, int offset, f8& both) const {
     const auto p = static_cast<size_t>(i), q = static_cast<size_t>(i + offset);
-    // Without noise, colours that differ by 1e-5 of their size are as alike as with it. What is the
-    // least does not hang on the units of light.
+    // Where there is no noise, colours that differ by 1e-5 of their size are alike. It is a share
+    // of the light, so that dim pictures are denoised as bright ones are.
     constexpr float kSquare = 1e-10f, kNotZero = 1e-30f;
+    const f8 most = splat8(1e30f);  // squares of light above 1e19 nits are infinite
     f8 sum = splat8(0);
     for (size_t c = 0; c < 3; ++c) {
         const f8 a = load8(&of_.colour[c][p]), b = load8(&of_.colour[c][q]), e = a - b;
         const f8 own = load8(&of_.variance[c][p]), other = load8(&of_.variance[c][q]);
         sum += (e * e - (own + min(own, other))) /
-               (kNotZero + kSquare * (a * a + b * b) + of_.precision * (own + other));
+               (kNotZero + min(kSquare * (a * a + b * b), most) + of_.precision * (own + other));
     }
     both = load8(&of_.inside[p]) * load8(&of_.inside[q]);
     return both * (1.f / 3.f) * sum;

@@ -18,20 +18,10 @@ f8 exp_minus(f8 a) {
     return root * root * (f8)((whole + 127) << 23);
 }
 
-}  // namespace
-
-WindowWeights::WindowWeights(const Compared& of)
-    : of_(of), weights_(static_cast<size_t>(kOffsets * kTile * kTile)) {
-    int n = 0;
-    for (int dy = -kWindow_px; dy <= kWindow_px; ++dy)
-        for (int dx = -kWindow_px; dx <= kWindow_px; ++dx)
-            weigh(dy * HalfTile::kSide + dx, &weights_[static_cast<size_t>(kTile * kTile * n++)]);
-}
-
 // Squared difference of eight pixels from others, without what their noise adds, in units of it
 // (Rousselle, Knaus and Zwicker 2012, "Adaptive Rendering with Non-Local Means Filtering",
 // equation 3).
-f8 WindowWeights::distance(int i, int offset, f8& both) const {
+f8 distance(const Compared& of, int i, int offset, f8& both) {
     const auto p = static_cast<size_t>(i), q = static_cast<size_t>(i + offset);
     // Where there is no noise, colours that differ by 1e-5 of their size are alike. It is a share
     // of the light, so that dim pictures are denoised as bright ones are.
@@ -39,24 +29,24 @@ f8 WindowWeights::distance(int i, int offset, f8& both) const {
     const f8 most = splat8(1e30f);  // squares of light above 1e19 nits are infinite
     f8 sum = splat8(0);
     for (size_t c = 0; c < 3; ++c) {
-        const f8 a = load8(&of_.colour[c][p]), b = load8(&of_.colour[c][q]), e = a - b;
-        const f8 own = load8(&of_.variance[c][p]), other = load8(&of_.variance[c][q]);
+        const f8 a = load8(&of.colour[c][p]), b = load8(&of.colour[c][q]), e = a - b;
+        const f8 own = load8(&of.variance[c][p]), other = load8(&of.variance[c][q]);
         sum += (e * e - (own + min(own, other))) /
-               (kNotZero + min(kSquare * (a * a + b * b), most) + of_.precision * (own + other));
+               (kNotZero + min(kSquare * (a * a + b * b), most) + of.precision * (own + other));
     }
-    both = load8(&of_.inside[p]) * load8(&of_.inside[q]);
+    both = load8(&of.inside[p]) * load8(&of.inside[q]);
     return both * (1.f / 3.f) * sum;
 }
 
 // Patches are of 3 x 3 pixels.
-void WindowWeights::weigh(int offset, float* to) const {
+void weigh(const Compared& of, int offset, float* to) {
     constexpr int kRow = kTile + 8;
     std::array<float, (kTile + 2) * kRow> across, valid;  // sums of three in a row, and of pixels
     std::array<float, kRow + 8> row, there;
     for (int y = -1; y <= kTile; ++y) {
         for (int x = -1; x < kTile + 1; x += 8) {
             f8 both;
-            store8(&row[size_t(x + 1)], distance(HalfTile::index(x, y), offset, both));
+            store8(&row[size_t(x + 1)], distance(of, HalfTile::index(x, y), offset, both));
             store8(&there[size_t(x + 1)], both);
         }
         const auto at = static_cast<size_t>((y + 1) * kRow);
@@ -75,8 +65,19 @@ void WindowWeights::weigh(int offset, float* to) const {
             const f8 mean = max(sum / max(count, splat8(1)), splat8(0));
             const int other = HalfTile::index(static_cast<int>(x), static_cast<int>(y)) + offset;
             store8(to + y * kTile + x,
-                   load8(&of_.inside[static_cast<size_t>(other)]) * exp_minus(mean));
+                   load8(&of.inside[static_cast<size_t>(other)]) * exp_minus(mean));
         }
+}
+
+}  // namespace
+
+WindowWeights::WindowWeights(const Compared& of)
+    : weights_(static_cast<size_t>(kOffsets * kTile * kTile)) {
+    int n = 0;
+    for (int dy = -kWindow_px; dy <= kWindow_px; ++dy)
+        for (int dx = -kWindow_px; dx <= kWindow_px; ++dx)
+            weigh(of, dy * HalfTile::kSide + dx,
+                  &weights_[static_cast<size_t>(kTile * kTile * n++)]);
 }
 
 }  // namespace petzval::integrator

@@ -31,10 +31,6 @@ class WindowWeights {
     }
 
   private:
-    void weigh(int offset, float* to) const;
-    [[nodiscard]] f8 distance(int i, int offset, f8& both) const;
-
-    const Compared of_;
     std::vector<float> weights_;
 };
 

@@ -26,13 +26,12 @@ f8 distance(const Compared& of, int i, int offset, f8& both) {
     // Where there is no noise, colours that differ by 1e-5 of their size are alike. It is a share
     // of the light, so that dim pictures are denoised as bright ones are.
     constexpr float kSquare = 1e-10f, kNotZero = 1e-30f;
-    const f8 most = splat8(1e30f);  // squares of light above 1e19 nits are infinite
     f8 sum = splat8(0);
     for (size_t c = 0; c < 3; ++c) {
         const f8 a = load8(&of.colour[c][p]), b = load8(&of.colour[c][q]), e = a - b;
         const f8 own = load8(&of.variance[c][p]), other = load8(&of.variance[c][q]);
         sum += (e * e - (own + min(own, other))) /
-               (kNotZero + min(kSquare * (a * a + b * b), most) + of.precision * (own + other));
+               (kNotZero + kSquare * (a * a + b * b) + of.precision * (own + other));
     }
     both = load8(&of.inside[p]) * load8(&of.inside[q]);
     return both * (1.f / 3.f) * sum;

@@ -55,7 +55,7 @@ void Regression::add_up() {
 // Solves matrix shares = (1, 0 ... 0), with a ridge (Hoerl and Kennard 1970) where the guides do
 // not vary.
 void Regression::solve() {
-    constexpr float kRidge = 1e-2f;
+    constexpr float kRidge = 3e-2f;
     const f8 ridge = kRidge * matrix_[0][0] + 1e-12f;
     for (size_t a = 1; a < kRegressors; ++a) matrix_[a][a] += ridge;
     matrix_[0][0] += 1e-12f;

@@ -11,10 +11,11 @@
 namespace petzval::integrator {
 
 /// Pixels around a pixel that tell how much of its noise is taken away.
-inline constexpr int kShrinkageRadius_px = 7;
-/// How far away estimates are looked at: the mean brightness of each of these pixels is that of
-/// pixels about it.
-inline constexpr int kShrinkageReach_px = 2 * kShrinkageRadius_px;
+inline constexpr int kShrinkageRadius_px = 10;
+/// Pixels around each of these that tell how bright it is.
+inline constexpr int kBrightnessRadius_px = 4;
+/// How far away estimates are looked at.
+inline constexpr int kShrinkageReach_px = kShrinkageRadius_px + kBrightnessRadius_px;
 
 /// Samples of each half from which on both tell which parts of the estimates are best; below, the
 /// first one is shown. With 2 of each, a picture of small lamps said 3 where its relative error was

@@ -51,7 +51,8 @@ class PetzvalToNoise:
         self.name = "petzval denoised" if denoises else "petzval"
 
     def render(self, a, row, scene, target, seed, output):
-        options = (*row.petzval, *(("--denoise",) if self.denoises else ()), "--noise", "%.6g%%" % (100 * target))
+        options = (*row.petzval, *(("--denoise",) if self.denoises else ()), "--noise", "%.6g%%" % (100 * target),
+                   "--time-limit", "%gs" % (a.longest_cpu_s / a.threads))
         cpu_s = self.program.render(a, dataclasses.replace(row, petzval=options), scene, MOST_SAMPLES, seed, output)
         return cpu_s, layer(output, "denoised" if self.denoises else "")
 

@@ -82,20 +82,23 @@ std::optional<double> spectral_channel_nm(std::string_view name) {
     return std::nullopt;
 }
 
-std::vector<SpectralChannel> spectral_channels(const PictureLayout& picture) {
+std::vector<SpectralChannel> spectral_channels(const PictureLayout& picture,
+                                               std::string_view layer) {
     std::vector<SpectralChannel> found;
-    for (size_t i = 0; i < picture.channels.size(); ++i)
-        if (const auto nm = spectral_channel_nm(picture.channels[i])) found.push_back({*nm, i});
+    for (size_t i = 0; i < picture.channels.size(); ++i) {
+        std::string_view name = picture.channels[i];
+        if (!name.starts_with(layer)) continue;
+        name.remove_prefix(layer.size());
+        if (const auto nm = spectral_channel_nm(name)) found.push_back({*nm, i});
+    }
     std::stable_sort(found.begin(), found.end(),
                      [](const auto& a, const auto& b) { return a.nm < b.nm; });
     return found;
 }
 
-std::vector<std::array<double, 2>> spectrum_of_pixel(const Picture& picture,
-                                                     const std::filesystem::path& file, int x,
-                                                     int y) {
-    const std::vector<SpectralChannel> channels = spectral_channels(picture);
-    if (channels.empty())
+PixelSpectra spectra_of_pixel(const Picture& picture, const std::filesystem::path& file, int x,
+                              int y) {
+    if (spectral_channels(picture).empty())
         throw ArgumentError(
             file.string(), "",
             "is not spectral, it has no channels S0; render with ⟨bins⟩ to get one");
@@ -105,10 +108,13 @@ std::vector<std::array<double, 2>> spectrum_of_pixel(const Picture& picture,
                             picture.x, picture.y, picture.x + picture.width - 1,
                             picture.y + picture.height - 1);
     const size_t pixel = size_t(row) * size_t(picture.width) + size_t(column);
-    std::vector<std::array<double, 2>> spectrum;
-    for (const auto& [nm, index] : channels)
-        spectrum.push_back({nm, picture.pixels[pixel * picture.channels.size() + index]});
-    return spectrum;
+    const auto spectrum = [&](std::string_view layer) {
+        std::vector<std::array<double, 2>> out;
+        for (const auto& [nm, index] : spectral_channels(picture, layer))
+            out.push_back({nm, picture.pixels[pixel * picture.channels.size() + index]});
+        return out;
+    };
+    return {spectrum(""), spectrum("denoised.")};
 }
 
 }  // namespace petzval::io

@@ -27,13 +27,19 @@ struct SpectralChannel {
     double nm;
     size_t index;
 };
-/// The channels S0 from short waves to long; none in a picture that is not spectral.
-[[nodiscard]] std::vector<SpectralChannel> spectral_channels(const PictureLayout&);
+/// The channels S0 of a layer, as "denoised.", from short waves to long; "" is the picture itself.
+/// None in a picture that is not spectral.
+[[nodiscard]] std::vector<SpectralChannel> spectral_channels(const PictureLayout&,
+                                                             std::string_view layer = "");
 
-/// Spectrum of one pixel x, y of the full frame: wavelength in nm and value, from short waves to
+/// Spectra of one pixel x, y of the full frame: wavelength in nm and value, from short waves to
 /// long. Throws ArgumentError, which names the file, for a picture that is not spectral and for a
 /// pixel that it does not hold.
-[[nodiscard]] std::vector<std::array<double, 2>> spectrum_of_pixel(
-    const Picture&, const std::filesystem::path& file, int x, int y);
+struct PixelSpectra {
+    std::vector<std::array<double, 2>> picture;
+    std::vector<std::array<double, 2>> denoised;  ///< none where the picture has no such layer
+};
+[[nodiscard]] PixelSpectra spectra_of_pixel(const Picture&, const std::filesystem::path& file,
+                                            int x, int y);
 
 }  // namespace petzval::io

@@ -95,19 +95,33 @@ void spectrum_command(const SpectrumOptions& o) {
         io::check_plot(o.plot);
     }
     io::PictureBudget pictures = o.order.render.scene.pictures();
-    const auto spectrum = io::spectrum_of_pixel(io::read_picture(o.in, pictures), o.in, at.x, at.y);
-    if (!o.plot.empty())
-        io::write_plot(o.plot, {.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),
-                                .x_label = "wavelength (nm)",
-                                .y_label = "spectral radiance (W m⁻² sr⁻¹ nm⁻¹)",
-                                .series = {{spectrum, io::PlotStyle::Steps, ""}}});
-    for (const auto& [nm, value] : spectrum) fmt::print("{:.7g} {:.9g}\n", nm, value);
+    const auto [spectrum, denoised] =
+        io::spectra_of_pixel(io::read_picture(o.in, pictures), o.in, at.x, at.y);
+    if (!o.plot.empty()) {
+        io::Plot plot{.title = fmt::format("pixel {},{} of {}", at.x, at.y, o.in),
+                      .x_label = "wavelength (nm)",
+                      .y_label = "spectral radiance (W m⁻² sr⁻¹ nm⁻¹)",
+                      .series = {{spectrum, io::PlotStyle::Steps, ""}}};
+        if (!denoised.empty()) {
+            plot.series.front().label = "picture";
+            plot.series.push_back({denoised, io::PlotStyle::Steps, "denoised"});
+        }
+        io::write_plot(o.plot, plot);
+    }
+    for (size_t i = 0; i < spectrum.size(); ++i) {
+        fmt::print("{:.7g} {:.9g}", spectrum[i][0], spectrum[i][1]);
+        if (i < denoised.size() && denoised[i][0] == spectrum[i][0])
+            fmt::print(" {:.9g}", denoised[i][1]);
+        fmt::print("\n");
+    }
 }
 
 void add_spectrum(CLI::App& image) {
     auto options = std::make_shared<SpectrumOptions>();
     CLI::App* spectrum =
-        image.add_subcommand("spectrum", "print one pixel of a spectral picture: nm and value");
+        image.add_subcommand("spectrum",
+                             "print one pixel of a spectral picture: nm, value, and the denoised "
+                             "value where it has one");
     spectrum->add_option("picture", options->in, "spectral .exr, as render --bins writes")
         ->required();
     spectrum->add_option("pixel", options->pixel, "x,y in pixels of the full frame")->required();

@@ -36,6 +36,18 @@ std::array<int, 3> colours_of(const io::Picture& p) {
     return {from("R"), from("G"), from("B")};
 }
 
+/// Puts the denoised colours of a picture in the place of the others; false where it has none.
+bool take_denoised(io::Picture& p) {
+    const std::array<int, 3> to = colours_of(p);
+    const std::array<int, 3> from{io::channel_index(p, "denoised.R"),
+                                  io::channel_index(p, "denoised.G"),
+                                  io::channel_index(p, "denoised.B")};
+    if (std::min(std::ranges::min(to), std::ranges::min(from)) < 0) return false;
+    for (auto pixel = p.pixels.begin(); pixel != p.pixels.end(); pixel += p.channels.size())
+        for (size_t c = 0; c < 3; ++c) pixel[to[c]] = pixel[from[c]];
+    return true;
+}
+
 /// Luminances of the pixels that show something, for exposure_for().
 std::vector<double> luminances_of(const io::Picture& p) {
     std::vector<double> out;
@@ -67,6 +79,7 @@ void view_command(ViewRequest& o) {
             fmt::format("warning: {} holds values for a display already, and goes through the view "
                         "as if they were light",
                         o.in));
+    if (take_denoised(picture)) print_notice(fmt::format("shows the denoised picture of {}", o.in));
     if (exposure.is_auto) {
         display.exposure_ev = exposure_for(luminances_of(picture)).ev;
         print_notice(fmt::format("exposure: {0} EV (--exposure {0})", display.exposure_ev));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Denoising from the command line: what is written, said and refused.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -73,15 +74,26 @@ TEST_F(CliDenoise, StatesWithoutTwoHalvesTellNoError) {
     EXPECT_THAT(complaint({"--spp", "0:1", "--denoise"}), HasSubstr("has no samples"));
 }
 
+// The display of a render, and of its EXR file.
 TEST_F(CliDenoise, ADisplayShowsTheDenoisedPicture) {
     ASSERT_EQ(denoised({"--spp", "4", "-o", path("a.png")}).exit_code, 0);
-    ASSERT_EQ(run_petzval({"image", "view", path("a.exr"), "-o", path("noisy.png")}).exit_code, 0);
+    const Finished view = run_petzval({"image", "view", path("a.exr"), "-o", path("view.png")});
+    ASSERT_EQ(view.exit_code, 0);
+    EXPECT_THAT(view.err, HasSubstr("shows the denoised picture"));
+    EXPECT_EQ(io::read_picture(path("view.png")).pixels, io::read_picture(path("a.png")).pixels);
+    ASSERT_EQ(run_petzval({"render", scene_, "--size", "64x48", "--env", "studio", "--spp", "4",
+                           "--quiet", "-o", path("noisy.exr"), "-o", path("noisy.png")})
+                  .exit_code,
+              0);
     EXPECT_NE(io::read_picture(path("a.png")).pixels, io::read_picture(path("noisy.png")).pixels);
+    const Finished noisy =
+        run_petzval({"image", "view", path("noisy.exr"), "-o", path("noisy_view.png")});
+    EXPECT_EQ(noisy.err, "");
 }
 
 TEST_F(CliDenoise, ACropHasTheBytesOfTheFrame) {
-    ASSERT_EQ(denoised({"--spp", "4"}).exit_code, 0);
-    ASSERT_EQ(denoised({"--spp", "4", "--crop", "20,10,21,13"}, "crop.exr").exit_code, 0);
+    ASSERT_EQ(denoised({"--spp", "16"}).exit_code, 0);
+    ASSERT_EQ(denoised({"--spp", "16", "--crop", "20,10,21,13"}, "crop.exr").exit_code, 0);
     const io::Picture whole = io::read_picture(path("a.exr")),
                       crop = io::read_picture(path("crop.exr"));
     ASSERT_EQ(crop.channels, whole.channels);
@@ -142,7 +154,7 @@ TEST_F(CliDenoise, RendersUntilItsErrorIsBelowANoise) {
 // The picture with bins is that of a render without denoising, and the denoised bins are those of
 // the full frame, of one run, and of all of its parts.
 TEST_F(CliDenoise, BinsAreDenoisedToo) {
-    const Words bins{"--bins", "400:700:100", "--spp", "8"};
+    const Words bins{"--bins", "400:700:100", "--spp", "16"};
     const auto with = [&](Words more) {
         more.insert(more.begin(), bins.begin(), bins.end());
         return more;
@@ -178,9 +190,16 @@ TEST_F(CliDenoise, BinsAreDenoisedToo) {
     }
     EXPECT_EQ(found, 3);
     EXPECT_GT(differ, 0);
+    const Finished spectrum = run_petzval({"image", "spectrum", path("a.exr"), "30,20"});
+    EXPECT_THAT(spectrum.out,
+                HasSubstr(fmt::format("550 {:.9g} {:.9g}\n", value(whole, "S0.550,0nm", 30, 20),
+                                      value(whole, "denoised.S0.550,0nm", 30, 20))));
+    const Finished plain_spectrum = run_petzval({"image", "spectrum", path("plain.exr"), "30,20"});
+    EXPECT_THAT(plain_spectrum.out,
+                HasSubstr(fmt::format("550 {:.9g}\n", value(noisy, "S0.550,0nm", 30, 20))));
     Words words{"merge", path("1.state"), path("2.state"), "-o", path("merged.exr")};
-    ASSERT_EQ(denoised({"--bins", "400:700:100", "--spp", "0:3"}, "1.state").exit_code, 0);
-    ASSERT_EQ(denoised({"--bins", "400:700:100", "--spp", "3:8"}, "2.state").exit_code, 0);
+    ASSERT_EQ(denoised({"--bins", "400:700:100", "--spp", "0:7"}, "1.state").exit_code, 0);
+    ASSERT_EQ(denoised({"--bins", "400:700:100", "--spp", "7:16"}, "2.state").exit_code, 0);
     ASSERT_EQ(run_petzval(words).exit_code, 0);
     EXPECT_EQ(file_bytes(path("merged.exr")), file_bytes(path("a.exr")));
 }

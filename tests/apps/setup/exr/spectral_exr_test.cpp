@@ -254,7 +254,7 @@ TEST(SpectralLayout, APixelsSpectrumIsItsBins) {
     const TemporaryFolder folder;
     io::write_exr(folder / "a.exr", developed(filled(kCrop, 16), 16));
     const io::Picture p = io::read_picture(folder / "a.exr");
-    const auto spectrum = io::spectrum_of_pixel(p, "a.exr", 6, 38);
+    const auto spectrum = io::spectra_of_pixel(p, "a.exr", 6, 38).picture;
     ASSERT_EQ(spectrum.size(), 35u);
     for (size_t i = 0; i < 35; ++i) {
         EXPECT_EQ(spectrum[i][0], 385 + 10 * double(i));
@@ -262,7 +262,7 @@ TEST(SpectralLayout, APixelsSpectrumIsItsBins) {
         EXPECT_FLOAT_EQ(float(spectrum[i][1]), i == 5 ? l.bin_5 : i == 20 ? l.bin_20 : 0.f);
     }
     for (const V2i& at : {V2i(1, 3), V2i(2, 2), V2i(7, 38), V2i(6, 39), V2i(-1, 5)})
-        EXPECT_THROW((void)io::spectrum_of_pixel(p, "a.exr", at.x, at.y), io::ArgumentError);
+        EXPECT_THROW((void)io::spectra_of_pixel(p, "a.exr", at.x, at.y), io::ArgumentError);
 }
 
 }  // namespace

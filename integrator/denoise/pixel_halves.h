@@ -22,6 +22,8 @@ struct PixelHalves {
             of_b[e] = Imath::V3d(estimates.colour[1][e][at]);
         }
     }
+    /// What the samples show.
+    [[nodiscard]] Imath::V3d samples() const { return (a + b) / 2; }
 };
 
 /// Whether both halves of a pixel have samples: one alone knows nothing of its error.

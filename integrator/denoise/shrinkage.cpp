@@ -2,7 +2,6 @@
 #include "integrator/denoise/shrinkage.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "integrator/denoise/half_tile.h"
 #include "integrator/denoise/pixel_halves.h"
@@ -67,7 +66,8 @@ void shrink_bins(const Film& film, const HalfEstimates& estimates, const ShownSh
 }
 
 // A pixel has a share in its own sums: by that its error would look too small. What goes to the
-// error is what the other pixels say, and the rest of the way by the other half's estimate. That
+// error is what the other pixels say (its own light tells how much each of them counts; of that no
+// bias was found), and the rest of the way by the other half's estimate. That
 // one is biased where it blurs, and the other half itself is not independent of the parts: what
 // both differ by is in doubt.
 void tell_error(const PixelHalves& p, const V3d& shown, const V2d& parts, const V2d& by_others,
@@ -113,7 +113,7 @@ void shrink_tile(const Film& film, const HalfEstimates& estimates, const Rect& t
         const V2d first_alone(1, 0);
         const V2d parts = can_choose ? parts_of(ways.all(x, y)) : first_alone;
         const ShownShares shares(parts);
-        V3d shown = shares.samples * (p.a + p.b) / 2;
+        V3d shown = shares.samples * p.samples();
         for (size_t e = 0; e < kEstimates; ++e)
             shown += shares.estimates[e] * (p.of_a[e] + p.of_b[e]) / 2;
         out.colour[at] = V3f(shown);

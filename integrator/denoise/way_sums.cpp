@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/film/grown.h"
+#include "core/spectrum/bands.h"
 #include "integrator/denoise/denoise.h"
 #include "integrator/denoise/pixel_halves.h"
 
@@ -12,7 +13,8 @@ namespace {
 
 using Imath::V3d;
 
-/// One over the square of what R, G and B of a pixel's error are measured by, nits^-2.
+/// What squared errors of R, G and B of a pixel are multiplied by, so that they are relative ones:
+/// about one over its squared brightness, nits^-2.
 using Scale = V3d;
 
 // The picture is M = (A + B) / 2, an estimate E = (D(A) + D(B)) / 2, the truth T. M + sum of
@@ -23,13 +25,13 @@ using Scale = V3d;
 WaySums way_sums_of(const PixelHalves& p, const Scale& scale) {
     const V3d apart = (p.a - p.b) * scale;
     std::array<V3d, kEstimates> way;
-    for (size_t e = 0; e < kEstimates; ++e) way[e] = (p.of_a[e] - p.a + p.of_b[e] - p.b) / 2;
+    for (size_t e = 0; e < kEstimates; ++e) way[e] = (p.of_a[e] + p.of_b[e]) / 2 - p.samples();
     const auto gain = [&](size_t e) { return apart.dot(p.a - p.b - (p.of_a[e] - p.of_b[e])) / 4; };
     const auto product = [&](size_t e, size_t f) { return (way[e] * scale).dot(way[f]); };
     return {{gain(0), gain(1), product(0, 0), product(0, 1), product(1, 1)}};
 }
 
-// Means over the squares about the pixels of `where`, as far as they lie in the frame.
+// Means over the squares about the pixels of `where`, as far as `of` goes.
 Pixels<V3d> means_about(const Pixels<V3d>& of, const Rect& where, int radius_px) {
     const Rect& from = of.where();
     Pixels<V3d> rows({where.x0, from.y0, where.x1, from.y1}), out(where);
@@ -47,17 +49,19 @@ Pixels<V3d> means_about(const Pixels<V3d>& of, const Rect& where, int radius_px)
     return out;
 }
 
-/// How bright the pixels about a tile are: by what of them is estimated.
+/// How bright pixels are.
 struct Brightness {
-    /// By the mean over 3 x 3 pixels. Where it is dark, what is about counts too, a little.
-    Pixels<double> luminance;
-    Pixels<Scale> scale;  ///< as of relative errors; 0 where all is black
+    Pixels<double> luminance;  ///< tells which pixels are alike
+    Pixels<Scale> scale;       ///< 0 where all is black
 
     explicit Brightness(const Rect& where) : luminance(where), scale(where) {}
 };
 
+// Estimates of 3 x 3 pixels tell how bright a pixel is. Where it is dark the light about counts a
+// little: there an error is seen against it. Samples have no part in it: those that are dark by
+// chance would be called alike, and their noise too small.
 Brightness brightness_of(const HalfEstimates& estimates, const Rect& where) {
-    constexpr double kOfLightAbout = 0.01;
+    constexpr double kAbout = 0.01, kSquareAbout = 0.01;
     const Rect further = grown(where, kBrightnessRadius_px, estimates.pixels);
     Pixels<V3d> light(further);
     for (int y = further.y0; y < further.y1; ++y)
@@ -67,15 +71,15 @@ Brightness brightness_of(const HalfEstimates& estimates, const Rect& where) {
                     light(x, y) += V3d(estimate[estimates.offset(x, y)]);
     const Pixels<V3d> near = means_about(light, where, 1),
                       about = means_about(light, where, kBrightnessRadius_px);
-    const auto luminance = [](const V3d& rgb) {
-        return std::max(0., rgb.dot(V3d(0.2126, 0.7152, 0.0722)));
+    const auto luminance_of = [](const V3d& rgb) {
+        return std::max(0., double(luminance(Rgb(float(rgb.x), float(rgb.y), float(rgb.z)))));
     };
     Brightness out(where);
     for (int y = where.y0; y < where.y1; ++y)
         for (int x = where.x0; x < where.x1; ++x) {
-            const V3d& n = near(x, y);
-            const V3d square = n * n + V3d(kOfLightAbout * about(x, y).length2());
-            out.luminance(x, y) = luminance(n) + kOfLightAbout * luminance(about(x, y));
+            const V3d &n = near(x, y), &a = about(x, y);
+            const V3d square = n * n + V3d(kSquareAbout * a.length2());
+            out.luminance(x, y) = luminance_of(n) + kAbout * luminance_of(a);
             for (int c = 0; c < 3; ++c) out.scale(x, y)[c] = square[c] > 0 ? 1 / square[c] : 0;
         }
     return out;
@@ -91,9 +95,9 @@ constexpr double tent(int distance_px) {
 }
 
 // Sums over the pixels about each of a tile. Nearer ones count more, and so do those that are
-// nearly as bright: what is best for a lamp is not for the wall. With r the logarithm of the ratio
-// of two luminances a and b, the weight is about 1 / (1 + (r / 0.3)^2): r^2 is (a - b)^2 / (a b),
-// nearly.
+// nearly as bright: what is best for a lamp is not for the wall. The weight of a luminance b at one
+// of a is 1 / (1 + (a - b)^2 / (c^2 a b)). For nearly equal ones (a - b)^2 / (a b) is the square of
+// the logarithm of their ratio; beyond, it grows faster.
 void sum_alike(const Pixels<double>& luminance, const WayPlanes& own, const Rect& tile,
                WayPlanes& out) {
     constexpr int kR = kShrinkageRadius_px;

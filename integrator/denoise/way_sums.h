@@ -48,7 +48,8 @@ class Pixels {
 /// What pixels add to WaySums, a plane for each number.
 using WayPlanes = std::array<Pixels<double>, WaySums::kNumbers>;
 
-/// Sums of the ways about each pixel of a tile; all are 0 where no second estimate counts.
+/// Sums of the ways about each pixel of a tile of the denoiser; all are 0 where no second estimate
+/// counts.
 class WaysAbout {
   public:
     /// Looks at estimates up to kShrinkageReach_px away from the tile, as far as the frame goes.

@@ -32,13 +32,13 @@ struct SpectralChannel {
 [[nodiscard]] std::vector<SpectralChannel> spectral_channels(const PictureLayout&,
                                                              std::string_view layer = "");
 
-/// Spectra of one pixel x, y of the full frame: wavelength in nm and value, from short waves to
-/// long. Throws ArgumentError, which names the file, for a picture that is not spectral and for a
-/// pixel that it does not hold.
+/// Spectra of a pixel: wavelength in nm and value, from short waves to long.
 struct PixelSpectra {
     std::vector<std::array<double, 2>> picture;
     std::vector<std::array<double, 2>> denoised;  ///< none where the picture has no such layer
 };
+/// Spectra of one pixel x, y of the full frame. Throws ArgumentError, which names the file, for a
+/// picture that is not spectral and for a pixel that it does not hold.
 [[nodiscard]] PixelSpectra spectra_of_pixel(const Picture&, const std::filesystem::path& file,
                                             int x, int y);
 

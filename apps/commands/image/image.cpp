@@ -108,10 +108,10 @@ void spectrum_command(const SpectrumOptions& o) {
         }
         io::write_plot(o.plot, plot);
     }
-    for (size_t i = 0; i < spectrum.size(); ++i) {
-        fmt::print("{:.7g} {:.9g}", spectrum[i][0], spectrum[i][1]);
-        if (i < denoised.size() && denoised[i][0] == spectrum[i][0])
-            fmt::print(" {:.9g}", denoised[i][1]);
+    for (const auto& [nm, value] : spectrum) {
+        fmt::print("{:.7g} {:.9g}", nm, value);
+        for (const auto& [denoised_nm, denoised_value] : denoised)
+            if (denoised_nm == nm) fmt::print(" {:.9g}", denoised_value);
         fmt::print("\n");
     }
 }

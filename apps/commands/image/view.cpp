@@ -36,8 +36,9 @@ std::array<int, 3> colours_of(const io::Picture& p) {
     return {from("R"), from("G"), from("B")};
 }
 
-/// Puts the denoised colours of a picture in the place of the others; false where it has none.
+/// Puts the denoised colours of a picture in the place of R, G and B; false where it has none.
 bool take_denoised(io::Picture& p) {
+    if (io::channel_index(p, "Y") >= 0) return false;  // that is what is shown
     const std::array<int, 3> to = colours_of(p);
     const std::array<int, 3> from{io::channel_index(p, "denoised.R"),
                                   io::channel_index(p, "denoised.G"),

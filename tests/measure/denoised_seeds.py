@@ -27,15 +27,16 @@ import denoised as views_of  # noqa: E402
 import denoised_regions as regions_of  # noqa: E402
 
 VIEWS = {
-    "first_light, Takumar f/2": (views_of.FIRST_LIGHT, "--lens", "takumar-50mm-f1.2", "--fstop", "2"),
-    "ornaments, double Gauss f/2": (views_of.ORNAMENTS, "--lens", "double-gauss-100mm-f2"),
+    "first_light, Takumar f/2": (views_of.FIRST_LIGHT, "--lens", "takumar-50mm-f1.2", "--fstop", "2",
+                                  "--focus", "1m"),
+    "ornaments, double Gauss": (views_of.ORNAMENTS, "--lens", "double-gauss-100mm-f2"),
 }
 LINE = re.compile(r"(\d+),(\d+),(\d+),(\d+) +denoised (.*?) +without (.*)")
 
 
 def bounds(said):
     """Lower and upper bound of what is said of a region."""
-    number = r"([0-9.e+]+) %"
+    number = r"([0-9.e+-]+) %"
     found = re.fullmatch("at most " + number, said)
     if found:
         return 0, float(found[1]) / 100

@@ -30,17 +30,14 @@ class Pixels {
         : where_(where),
           values_(static_cast<size_t>(where.width()) * static_cast<size_t>(where.height()), T(0)) {}
     [[nodiscard]] const Rect& where() const { return where_; }
-    [[nodiscard]] T& operator()(int x, int y) { return row(y)[x - where_.x0]; }
-    [[nodiscard]] const T& operator()(int x, int y) const { return row(y)[x - where_.x0]; }
-    /// The first number of a row.
-    [[nodiscard]] T* row(int y) {
-        return values_.data() + static_cast<size_t>(y - where_.y0) * size_t(where_.width());
-    }
-    [[nodiscard]] const T* row(int y) const {
-        return values_.data() + static_cast<size_t>(y - where_.y0) * size_t(where_.width());
-    }
+    [[nodiscard]] T& operator()(int x, int y) { return values_[index(x, y)]; }
+    [[nodiscard]] const T& operator()(int x, int y) const { return values_[index(x, y)]; }
 
   private:
+    [[nodiscard]] size_t index(int x, int y) const {
+        return static_cast<size_t>(y - where_.y0) * size_t(where_.width()) + size_t(x - where_.x0);
+    }
+
     Rect where_;
     std::vector<T> values_;
 };

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/cli.h"
+#include "tests/support/pictures.h"
 
 namespace petzval::apps {
 namespace {
@@ -89,6 +90,21 @@ TEST_F(CliDenoise, ADisplayShowsTheDenoisedPicture) {
     const Finished noisy =
         run_petzval({"image", "view", path("noisy.exr"), "-o", path("noisy_view.png")});
     EXPECT_EQ(noisy.err, "");
+}
+
+// Y is shown where a picture has it, whatever stands beside it.
+TEST_F(CliDenoise, AGreyPictureOfAnotherProgramIsShownAsItIs) {
+    io::write_exr(path("grey.exr"), test::picture(1, 1, {"Y"}, {0.2f}));
+    io::write_exr(path("both.exr"),
+                  test::picture(1, 1, {"Y", "denoised.R", "denoised.G", "denoised.B"},
+                                {0.2f, 0.9f, 0.5f, 0.1f}));
+    for (const char* name : {"grey", "both"}) {
+        const Finished run =
+            run_petzval({"image", "view", path(name) + ".exr", "-o", path(name) + ".png"});
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        EXPECT_EQ(run.err, "");
+    }
+    EXPECT_EQ(io::read_picture(path("both.png")).pixels, io::read_picture(path("grey.png")).pixels);
 }
 
 TEST_F(CliDenoise, ACropHasTheBytesOfTheFrame) {

@@ -34,6 +34,15 @@ TEST_F(CliSpectrum, PrintsThePixelsBins) {
     EXPECT_EQ(run.out, "385 3.5\n390.25 3.625\n1005 3.375\n");
 }
 
+// A file of another program, with a denoised value for one of its bins.
+TEST_F(CliSpectrum, PairsDenoisedBinsByTheirWavelengths) {
+    const std::string file =
+        spectral("a.exr", {385, 395}, {"R", "G", "B", "denoised." + io::spectral_channel(395)});
+    const Finished run = run_petzval({"image", "spectrum", file, "5,6"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.out, "385 3.5\n395 3.625 3.375\n");
+}
+
 TEST_F(CliSpectrum, PlotsThePixelsBins) {
     const std::string file = spectral("it's_a.exr", {385, 395, 405});
     for (const char* name : {"plot.svg", "plot.png"}) {

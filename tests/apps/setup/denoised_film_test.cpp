@@ -109,7 +109,7 @@ TEST(DenoisedFilm, PartsAreToldTheirOwnError) {
     EXPECT_NEAR(std::sqrt(told_left / left), 1, 0.3);
     // Less than its own noise: an upper bound, and still nothing of the left half.
     EXPECT_GT(told_right, right);
-    EXPECT_LT(told_right, 12 * right);
+    EXPECT_LT(told_right, left / 90);
 }
 
 // What is in doubt widens the bounds where all blocks have it in common. Where it is as likely more
